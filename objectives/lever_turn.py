@@ -26,7 +26,8 @@ ARM_TIME_RATIO = _form(
     kind=RATIO,
     forms=(lambda c, _: arm_time_ratio_at_constant_crank_speed(c),),
     place=360,
-    sentence="The time of the arm's slow stroke over that of its fast one, with the crank at constant speed.",
+    sentence="The time of the arm's slow stroke divided by the time of its fast stroke, with the crank at constant "
+    "speed.",
     advice="If the arm rotates, a stroke lasts from one crossing of the normal to the line between both pivots to "
     "the other.",
     formula="(180 deg + a) / (180 deg - a), a = asin((m - e) / M) + asin((m + e) / M), m < M of crank and frame",
@@ -64,11 +65,11 @@ ARM_TRANSMISSION_ANGLE = _form(
 )
 ARM_SPEED_RATIO = _peak(
     name="arm_speed_ratio",
-    title="greatest speed of the arm over that of the crank",
+    title="greatest speed of the arm divided by the speed of the crank",
     kind=RATIO,
     curves=("arm_speed_ratio",),
     place=363,
-    sentence="The greatest angular speed of the arm over that of the crank.",
+    sentence="The greatest angular speed of the arm divided by the angular speed of the crank.",
     formula="max over the turn of |d gamma / d theta|, r / |f - r| without an offset",
     example=1.2,
 )

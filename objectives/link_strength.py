@@ -34,7 +34,7 @@ class LinkStress(BarPeak):
     """Maximum stress along the links and in the net sections of their eyes, or the yield strength divided by it."""
 
     def stress_locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
-        """Return the stress maxima for both links, even if only one is asked for."""
+        """Return the stress maxima for both links, even if only one is requested."""
         return tuple(location for _, location in _links_and_locations(mechanism))
 
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:

@@ -16,8 +16,8 @@ class Lever:
     """Data of a lever besides crank (the lever), rod (the frame) and offset.
 
     frame_angle: direction from the lever's pivot to the cylinder's, rad from +x. pin_angle: angle from the crank's own
-    line to its pin, rad. cylinder: its known data. arm: what the line turns if the crank rotates fully.
-    spring: one that acts on the lever, if any.
+    line to its pin, rad. cylinder: its known data. arm: the arm that the cylinder's line turns if the crank rotates
+    fully. spring: spring on the lever, if any.
     """
 
     frame_angle: float

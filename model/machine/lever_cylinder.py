@@ -24,13 +24,13 @@ _ROUNDING = 1e-8
 class Cylinder:
     """A single-stage hydraulic or pneumatic cylinder; None for unknown values.
 
-    Each number is checked by itself; `require_sizes_to_agree` compares them.
-    closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: closed length
-    minus stroke, m. mounting: a clevis or an eye at the end of the barrel, or a trunnion along it, beyond which the
-    barrel extends, so that the stroke may exceed the closed length; the cylinder pivots on either.
-    bore, rod: diameters, m. supply_pressure: Pa above that of the other side. seal_friction: N, against the motion.
-    modulus: modulus of elasticity of the piston rod, Pa. barrel_mass, piston_rod_mass: kg, uniform bars as long as the
-    closed cylinder, or as its least length in the swing. length_tolerance: of its length, m.
+    Each number is checked by itself; `require_sizes_to_agree` compares them. closed_length: least length between the
+    pins A and B along the line, m. stroke: m. dead_length: closed length minus stroke, m. mounting: a clevis or an eye
+    at the end of the barrel, or a trunnion along it, beyond which the barrel extends, so that the stroke may exceed the
+    closed length; the cylinder pivots on either. bore, rod: diameters, m. supply_pressure: Pa above the pressure on the
+    other side. seal_friction: N, against the motion. modulus: modulus of elasticity of the piston rod, Pa. barrel_mass,
+    piston_rod_mass: kg, uniform bars as long as the closed cylinder, or as its least length in the swing.
+    length_tolerance: of its length, m.
     """
 
     closed_length: float | None = None
@@ -56,7 +56,7 @@ class Cylinder:
         require_numbers(self, "length_tolerance", phrase="the {} of a cylinder", least=0.0, unit="m")
 
     def require_sizes_to_agree(self, least: Cylinder) -> None:
-        """Raise `InputError` unless some sizes from those of the least cylinder to these belong to one cylinder."""
+        """Raise `InputError` unless some sizes between the smallest cylinder's and these belong to one cylinder."""
         self._require_lengths_to_agree(least)
         if self.bore is not None and least.rod is not None and least.rod >= self.bore:
             raise InputError(

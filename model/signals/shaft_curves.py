@@ -165,7 +165,7 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: An
 class ShaftCurve(NamedTuple):
     """One curve. kind: a signal, `TOUCH`, `WORK` or a constant after `WORK`. members: summed cylinders.
 
-    vector: whether both components count. rubbing: whether friction counts.
+    vector: whether both components count. rubbing: whether friction is included.
     """
 
     kind: int

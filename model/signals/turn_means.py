@@ -76,7 +76,7 @@ Otherwise rounding errors, which halving does not reduce, would halve every pane
 class MeansTask(NamedTuple):
     """Curves of a machine. kind: a `Signal` or `WORK`. jumps: whether the curves may jump at cuts.
 
-    rubbing: whether friction counts.
+    rubbing: whether friction is included.
     """
 
     kind: int

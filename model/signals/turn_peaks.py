@@ -59,7 +59,7 @@ class _Curve(NamedTuple):
 
 
 class TurnTask(NamedTuple):
-    """A signal of a machine, with the number of sampled angles per turn. rubbing: whether friction counts."""
+    """A signal of a machine, with the number of sampled angles per turn. rubbing: whether friction is included."""
 
     kind: int
     loads: Loads

@@ -55,7 +55,7 @@ class KernelSwing(NamedTuple):
 
 
 def kernel_swing(swing: Swing, *, rubbing: bool, forces: bool) -> KernelSwing:
-    """Return a swing for the kernel. rubbing: whether friction counts. forces: whether forces are needed."""
+    """Return a swing for the kernel. rubbing: whether friction is included. forces: whether forces are needed."""
     per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
     law = law_code(swing.law)
     return KernelSwing(

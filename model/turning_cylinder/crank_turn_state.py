@@ -3,8 +3,8 @@
 The crank turns at constant speed w. With psi from OA to OB, the direction gamma of the line turns by gamma' per angle
 of the crank and the length L along it changes by L'. Crank < frame: the line swings between two reversals, where it is
 a tangent of the pin's circle. Frame < crank: it rotates fully too. Then a stroke lasts from one crossing of the normal
-of OA to the other. Four angles cut the turn, where friction and loads change: psi = 0 and 180 deg, where L' changes its
-sign, and both ends of the fast stroke around psi = 0.
+of OA to the other. Four angles, at which friction or loads change, divide the turn: psi = 0 and 180 deg, where L'
+changes its sign, and both ends of the fast stroke around psi = 0.
 
 The arm of the line carries an inertia, its weight, a torque against its motion, and a ram that its pin at the distance
 R moves by y = R sin(gamma - direction of OA), normal to OA. With their moment N about A on the line, F of the line on

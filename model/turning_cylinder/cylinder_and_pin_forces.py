@@ -31,7 +31,7 @@ from .lever_state import LeverNumbers, lever_state, work_against_gravity_and_spr
 
 @dataclass(frozen=True, kw_only=True)
 class LeverBody:
-    """Lever with what it carries.
+    """Lever with the mass that it carries.
 
     mass: kg. moment_along, moment_across: first moments about O in its own axes, kg m. inertia: about O, kg m^2.
     """

@@ -29,11 +29,10 @@ class LeverPoint:
 class LeverSummary:
     """A swing out and back, SI and radians; None for values that do not follow from the given numbers.
 
-    lengths: cylinder at start and end.
-    hold: push at rest at start and end, without friction of the seal. push, pull: greatest forces with it, over both
-    ways and at rest at both ends; 0 where the cylinder never has to. energy_out, energy_back: work of the slow cylinder
-    each way, J. power: greatest size, W. fitting_sizes: OB and OA with which the swing takes the whole stroke of the
-    cylinder, at the same angles.
+    lengths: cylinder at start and end. hold: push at rest at start and end, without friction of the seal. push, pull:
+    greatest forces with it, over both ways and at rest at both ends; 0 where the cylinder never pushes or pulls.
+    energy_out, energy_back: work of the slow cylinder each way, J. power: greatest magnitude, W. fitting_sizes: OB and
+    OA with which the swing takes the whole stroke of the cylinder, at the same angles.
     """
 
     lengths: tuple[float, float]

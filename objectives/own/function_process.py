@@ -125,7 +125,7 @@ def _checked_result(returned: NDArray[Any], dimensions: Array, column: int | Non
         returned = returned[:, None]
     if returned.ndim != 2 or len(returned) != n or not 1 <= returned.shape[1] <= PIECES:
         raise Refused(
-            f"must return one number for each design, or up to {PIECES} numbers, of which the greatest counts, "
+            f"must return one number for each design, or up to {PIECES} numbers, of which the greatest is used, "
             f"with shape ({n},) or ({n}, k); got shape {returned.shape}; reduce a curve over the cycle with peaks, "
             "greatest or mean"
         )

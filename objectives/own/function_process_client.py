@@ -30,7 +30,7 @@ from ...model.kernel.batches import interruption_grace_time, poll_interruption, 
 from ...model.machine.mechanism import Mechanism
 from .function_process import HEAD, FunctionResult, Refused, unpack_result
 
-_START = 600.0  # s for importing this software or compiling a kernel on a busy machine; neither counts in the limit
+_START = 600.0  # s for importing this software or compiling a kernel on a busy machine; neither counts as call time
 _GRACE = 10.0  # s beyond the limit before the process is ended from here
 _TICK = 0.1  # s between two checks whether the call should end
 _PAUSE = 1.0  # s that a tick takes at most on a busy machine; after a longer one, this process was suspended
@@ -160,7 +160,7 @@ class Worker:
         return content
 
     def _next_message(self, limit: float) -> Message:
-        """Return the next message from the process; empty if it has ended or is ended for being late.
+        """Return the next message from the process; empty if it has ended, or is ended for exceeding the limit.
 
         An interruption ends a slow process. Time during which this process is suspended does not count.
         """

@@ -290,7 +290,7 @@ def _row_blocks(rows: Mask, size: int) -> Iterator[IntArray]:
 def _merge_parts(
     count: int, parts: list[tuple[IntArray, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
-    """Return values, gradients and labels for all designs, merged from parts with some each.
+    """Return values, gradients and labels for all designs, merged from parts that each hold some of the designs.
 
     Missing pieces are `absent`.
     """

@@ -135,7 +135,7 @@ def samples_of_measured_table(
             read = np.asarray(table[name], dtype=np.float64)
         except (TypeError, ValueError):
             raise InputError(
-                f"{name!r} must contain numbers; got other values; leave empty what was not measured"
+                f"{name!r} must contain numbers; got other values; leave cells without measurements empty"
             ) from None
         if read.ndim != 1 or (values and len(read) != len(next(iter(values.values())))):
             raise InputError(f"columns must be lists of equal length; got {name!r} of shape {read.shape}; correct it")
@@ -145,7 +145,7 @@ def samples_of_measured_table(
         if len(wrong):
             raise InputError(
                 f"{name!r} must be at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
-                f"{wrong[0] + 1}; check the unit, or leave empty what was not measured"
+                f"{wrong[0] + 1}; check the unit, or leave cells without measurements empty"
             )
         values[column.name] = scaled
     by_time = TIME_OF in values

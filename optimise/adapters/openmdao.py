@@ -24,7 +24,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
 
     Inputs: crank, rod, offset, and the extra variables with underscores in place of dots (mechanism_slider_mass).
     Outputs: quantities by name; by default, the objectives and the constrained quantities. Partials are exact. A design
-    that does not rotate fully has NaN outputs, which some line searches do not survive: bound the model so that rod
+    that does not rotate fully has NaN outputs, which make some line searches fail: bound the model so that rod
     exceeds crank + |offset|. Raises `InputError` if OpenMDAO is not installed.
     """
     require_problem(problem, "openmdao_component")

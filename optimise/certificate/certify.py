@@ -51,7 +51,7 @@ def certify_designs(
     designs (`boundable.unbounded_reason`).
     """
     if not len(dimensions):
-        raise InputError("a certificate needs a front with designs; this one is empty; its message says why")
+        raise InputError("a certificate needs a front with designs; this one is empty; see its message")
     if not 0.0 < epsilon < 1.0:
         raise InputError(f"epsilon must be a fraction of the objectives' ranges, above 0 and below 1; got {epsilon:g}")
     if not seconds > 0.0:

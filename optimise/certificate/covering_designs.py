@@ -42,8 +42,8 @@ def excess_over_designs(
 ) -> Array:
     """Return the excess (n,) of points (n, m) over designs (p, m), infinite if there are no designs.
 
-    earlier_excess: excess over other designs; the smaller counts. first: (n,), index of the first design to compare.
-    enough: a value that need not be improved.
+    earlier_excess: excess over other designs; the smaller excess is used. first: (n,), index of the first design to
+    compare. enough: a value that need not be improved.
     """
     n = len(points)
     out = np.full(n, np.inf) if earlier_excess is None else earlier_excess.copy()
@@ -115,7 +115,7 @@ def hypervolume_gap_bound(front: Array, designs: Array, epsilon: float, points: 
     """Return an upper bound on the excess of the true front's hypervolume over that of `front`; all scaled.
 
     `designs` cover every feasible design to within epsilon; each also lies beyond one of `points` unless the front
-    itself covers it to within epsilon. Both sets confine the true front; the smaller one counts.
+    itself covers it to within epsilon. Both sets confine the true front; the smaller one is used.
     """
     if not np.isfinite(epsilon):
         return float("inf")

@@ -93,7 +93,7 @@ class SwingBoxes:
         )
 
     def state_at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
-        """Return the state at fractions of the time (n, p); NaN where some designs in a box have none.
+        """Return the state at fractions of the time (n, p); NaN where some designs in a box have no state.
 
         probe: fractions on the same side of a corner in the law. back: 1 on the return stroke.
         """

@@ -259,7 +259,7 @@ class Wished:
         wished = [outcome for outcome in self.outcomes if outcome.kind == "value"]
         if not wished:
             if any(outcome.kind == "improve" and outcome.gained for outcome in self.outcomes):
-                return "the objectives to improve do so as far as the others allow"
+                return "the objectives to improve are improved as far as the others allow"
             return "nothing improves while the other objectives stay as required"
         if not self.possible:
             verdict = (

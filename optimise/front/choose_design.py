@@ -180,4 +180,4 @@ def _least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
 
 def _require_designs(values: Array) -> None:
     if not len(values):
-        raise InputError("the front is empty; its message says why")
+        raise InputError("the front is empty; see its message")

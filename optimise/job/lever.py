@@ -51,7 +51,9 @@ class CylinderPart(Checked[Cylinder]):
     rod: PositiveLength | None = optional_entry(
         "diameter of the piston rod, for the pulling force and buckling", "25 mm"
     )
-    supply_pressure: Pressure | None = optional_entry("greatest pressure above that of the other side", "160 bar")
+    supply_pressure: Pressure | None = optional_entry(
+        "greatest pressure above the pressure on the other side", "160 bar"
+    )
     seal_friction: NonNegativeForce = optional_entry("force of the seal against the motion", "50 N", default=0.0)
     barrel_mass: Mass = optional_entry(
         "of the barrel, a uniform bar as long as the closed cylinder", "8 kg", default=0.0

@@ -149,8 +149,9 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     """Return the optimum near u (k,) by the trust-region interior-point method, None if it is not feasible.
 
     R. H. Byrd, M. E. Hribar and J. Nocedal, "An interior point algorithm for large-scale nonlinear programming", SIAM
-    J. Optim. 9(4), 1999. A peak that appears or vanishes makes a slack jump, which may end it early: it then restarts,
-    closer to the limits. It stays within the inequalities, unless u lies on one. It does not support equalities.
+    J. Optim. 9(4), 1999. A peak that appears or vanishes makes a slack jump, which may end the search early: the search
+    then restarts, closer to the limits. It stays within the inequalities, unless u lies on one. It does not support
+    equalities.
     """
     for attempt in range(_ATTEMPTS):
         end, converged = _interior_point_run(programme, u, _MARGIN * _NEARER**attempt)

@@ -156,7 +156,7 @@ class _Search:
         return solution
 
     def _combine_to_cycle_time(self, fast: Array, slow: Array) -> Array:
-        """Return the convex combination of K with the cycle time, from one that takes less and one that takes more."""
+        """Return the convex combination of a faster and a slower K that has the cycle time."""
         from scipy.optimize import brentq
 
         def lateness(share: float) -> float:

@@ -99,7 +99,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
 def _may_distinguish_mirror_images(quantity: Quantity) -> bool:
     """Whether a quantity may distinguish offsets e and -e where random designs do not.
 
-    All custom quantities of a job may, except formulas without the offset's sign.
+    Every custom quantity of a job may distinguish them, except formulas without the offset's sign.
     """
     if quantity.constant:
         return False

@@ -104,7 +104,7 @@ def describe(
     if not record:
         near = closest_word(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "call `list` for all names"
-        raise NotFound(f"a name must be that of a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
+        raise NotFound(f"a name must belong to a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
     return ToolResult(record, "\n".join(lines))
 
 

@@ -154,7 +154,7 @@ def _run_tool(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult
     except SlidercrankError as error:
         return _error_result(str(error))
     except MemoryError:
-        return _error_result("not enough memory for this request; close other programs, or ask for less")
+        return _error_result("not enough memory for this request; close other programs, or request less")
     except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
         if isinstance(error, OSError) and is_disk_full(error):
             return _error_result(f"Disk full: {full_places_text(error)}; free some space")

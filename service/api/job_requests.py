@@ -86,8 +86,8 @@ class Clone(BaseModel, extra="forbid", strict=True):
         description="changes to the tables of the job, as a JSON merge patch (RFC 7396): null removes a key",
         examples=[{"name": "Feeder, heavier", "mechanism": {"slider": {"mass": "2.5 kg"}}}],
     )
-    priority: Priority | None = Field(None, description="priority; that of the job if left out")
-    limits: RequestedLimits | None = Field(None, description="limits; those of the job if left out")
+    priority: Priority | None = Field(None, description="priority; by default, the job's")
+    limits: RequestedLimits | None = Field(None, description="limits; by default, the job's")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -123,7 +123,7 @@ async def _http_error_response(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     detail, headers = error.detail, error.headers
     if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
-        detail = "there is nothing at this address; see /api/v1/openapi.json for those of the API"
+        detail = "nothing exists at this address; see /api/v1/openapi.json for the addresses of the API"
     elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers = {"Allow": ", ".join(_allowed_methods(request))}
         detail = f"this address must be called with another method; got {request.method}; use {headers['Allow']}"

@@ -171,7 +171,7 @@ Numbers = Mapping[str, float]
 """Numbers of a design by column, each in the column's unit."""
 _LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 
-_OTHER = "mm, instead of that of the design; crank_mm, rod_mm and offset_mm must be given together"
+_OTHER = "mm, replaces the design's value; crank_mm, rod_mm and offset_mm must be given together"
 _VALUE = "another number that varies, by column, such as slider_mass_kg=1.2; repeatable"
 
 

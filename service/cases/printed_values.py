@@ -1,7 +1,7 @@
 """Printed numbers of publications, and the verdict on each.
 
 The data file of each case has its printed numbers as text, since the printed digits state the claimed accuracy. The
-exact value comes from the model by the row's key. A number that the model contradicts needs a reason in `why`, written
+model supplies the exact value for the row's key. A number that the model contradicts needs a reason in `why`, written
 by the project. Only this module decides whether a number is confirmed.
 """
 

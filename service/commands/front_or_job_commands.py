@@ -100,7 +100,7 @@ def _rounded_up(amount: float) -> float:
 @with_question_help(
     CERTIFY,
     "Keeps certificate.json, and the added designs as certificate.csv, in the run's folder. Exit code 4 if the budget "
-    "does not suffice; Ctrl-C gives what is proven so far.",
+    "does not suffice; Ctrl-C stops and reports what is proven so far.",
 )
 def certify(
     run: Run,

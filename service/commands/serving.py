@@ -41,7 +41,7 @@ class WorkOptions:
     lease: Annotated[
         float,
         typer.Option(min=1.0, max=3600.0),
-        "Seconds after which a job whose worker has died goes to another worker.",
+        "Seconds after which a job whose worker has died is given to another worker.",
     ] = 30.0
     grace: Annotated[
         float, typer.Option(min=0.0, max=600.0), "Seconds that a job has to finish its round when the worker stops."

@@ -151,7 +151,7 @@ def _panels_of_turn(mechanism: Mechanism, linkage: Linkage) -> list[Panel]:
     found, degrees = state_at_crank_angles(mechanism, linkage, angles), np.degrees(angles)
     curves = (
         *(("torque on the crank", found.torque, TORQUE), ("length along the arm", found.length, LENGTH)),
-        *(("speed of the arm over that of the crank", found.turn_1, RATIO),),
+        *(("speed of the arm divided by the speed of the crank", found.turn_1, RATIO),),
         *(("acceleration of the arm over the crank's squared speed", found.turn_2, RATIO),),
     )
     return [Panel(name, CRANK_ANGLE, (Line("", degrees, curve),), kind, turns=True) for name, curve, kind in curves]

@@ -1,6 +1,6 @@
 """Submission of a job to the store: reads and checks its tables and functions.
 
-These functions run where a job is solved, so the operator of the workers allows them, with `serve` and `worker
+These functions run where a job is solved, so the operator of the workers must allow them, with `serve` and `worker
 --allow-quantity`. The API rejects all others immediately; `submit` does not know the workers, and leaves this check to
 them.
 """

@@ -59,8 +59,9 @@ class DesignQuestion:
     optional function `in_units` converts the numbers to a unit system.
 
     command: declaration as a separate command. Its numbers also accept `words`, the interface's names for the inputs,
-    and `swing`, the swing in the job, or `problem` if it sizes; the design need not rotate fully. The keys `note` or
-    `notes` in them explain undefined values; an optional function `notes` of the module reports unproven optima.
+    and `swing`, the swing in the job, or `problem` if the question sizes parts; the design need not rotate fully. The
+    keys `note` or `notes` in them explain undefined values; an optional function `notes` of the module reports unproven
+    optima.
     """
 
     package: str

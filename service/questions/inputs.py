@@ -16,9 +16,9 @@ class Input:
     name: parameter of the question's `numbers`, which has its default. kind: kind of the value, which is in SI there;
     None for a word. title: label of its field in a form. help: help text of the option, with the default in brackets.
     usual: default as typed, "" if there is none. option: command-line option, without dashes, if it differs from the
-    name. sign: required sign of the value. below: exclusive upper bound, in SI. drawn: whether the figure takes it too.
-    example: example as typed. words: `Literal` with the allowed words. loose: whether words may be capitalised, with -
-    or _ for spaces. required: whether it is mandatory.
+    name. sign: required sign of the value. below: exclusive upper bound, in SI. drawn: whether the figure accepts it
+    too. example: example as typed. words: `Literal` with the allowed words. loose: whether words may be capitalised,
+    with - or _ for spaces. required: whether it is mandatory.
     """
 
     name: str

@@ -98,8 +98,8 @@ def store_file_exists(file: Path) -> bool:
         raise StoreError(f"a store must be a file; {path_text(file)} is {kind}; name a file")
     if logged and not size:
         raise StoreError(
-            f"a write-ahead log must have its store beside it; {path_text(log)} belongs to one that was deleted or "
-            f"truncated; put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
+            f"a write-ahead log must have its store beside it; {path_text(log)} belongs to a store that was deleted "
+            f"or truncated; put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
         )
     return file.is_file()
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Action = Literal["note", "reason", "decided", "withdrawn", "deleted"]
-"""What happened to a bookmark. withdrawn: its decision was taken back, without another one in its place."""
+"""What happened to a bookmark. withdrawn: its decision was revoked and not replaced."""
 _SAME = 1e-9  # relative tolerance of a dimension: addresses and forms give it with fewer digits
 
 

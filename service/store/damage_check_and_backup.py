@@ -16,7 +16,7 @@ from .database_clock import now
 from .job_rows import require_checksum
 from .schema import designs, events, exact, jobs, records
 
-_MOST = 5  # maximum number named of each type of damage
+_MOST = 5  # maximum number of items named for each type of damage
 _SETTINGS = ("fsync", "full_page_writes")
 """PostgreSQL settings without which committed data may not survive a crash."""
 
@@ -39,7 +39,7 @@ def damages(database: Database) -> list[str]:
 
 
 def clock_ahead(database: Database) -> float:
-    """Return by how much the database clock is ahead of the clock of this machine, s."""
+    """Return the time, s, by which the database clock is ahead of the clock of this machine."""
     with database.reading() as connection:
         before = time.time()
         database_time = connection.execute(select(now())).scalar_one()
@@ -153,7 +153,7 @@ def back_up(database: Database, target: Path) -> None:
             verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if verdict != "ok":
             raise StoreError(
-                f"a backup must be intact; that of {database.name} gave: {verdict}; run slidercrank doctor"
+                f"a backup must be intact; the backup of {database.name} gave: {verdict}; run slidercrank doctor"
             )
         flush_to_disk(draft)
         draft.rename(target)

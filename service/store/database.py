@@ -68,7 +68,7 @@ class Database:
         if self._file is not None:
             store_file_exists(self._file)
             with contextlib.suppress(OSError):  # if it cannot be created, opening it reports why
-                # The files beside it, of the write-ahead log, get its permissions. An existing file is left alone:
+                # The files of the write-ahead log, beside it, get its permissions. An existing file is left alone:
                 # closing it would release the locks that SQLite holds on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
             self._known, self._open = _file_identity(self._file), is_readable_and_writable(self._file)
@@ -78,7 +78,8 @@ class Database:
                     f"a read-only store with a write-ahead log needs the file -shm beside it; {self.name} has "
                     f"{path_text(log)} alone; copy both to a folder where you may write, and name the copy"
                 )
-            # Where nobody can write anyway: SQLite would look for a log that it cannot create, or leave one behind.
+            # A file that nobody can write is opened as immutable; otherwise SQLite would look for a log that it cannot
+            # create, or leave one behind.
             alone = not self._open and not log.exists()
             if alone and os.access(self._file, os.R_OK):
                 unchanging = {"mode": "ro", "immutable": "1", "uri": "true"}

@@ -126,7 +126,7 @@ class Job:
 
     def record(self) -> dict[str, Any]:
         """Return the job as JSON, the same in all interfaces: times in seconds since 1970, memory in bytes."""
-        # Not `asdict`: its copies would take most of the time of a list.
+        # `asdict` is not used: its copies would take most of the time needed for a list.
         record = {name: value for name, value in vars(self).items() if name not in ("fence", "limits")}
         seconds, evaluations, memory = self.limits.seconds, self.limits.evaluations, self.limits.memory
         record["limits"] = {"seconds": seconds, "evaluations": evaluations, "memory_bytes": memory}

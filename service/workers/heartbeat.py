@@ -152,7 +152,7 @@ class Heartbeat:
 
     def _check_unresponsive_search(self) -> None:
         reason = NOT_DONE if self.claim.cancel_asked else self.budget.exhausted_limit_text()
-        if self.claim.waits:  # waits for space: then it cannot end
+        if self.claim.waits:  # while it waits for disk space, it cannot end
             self._since.pop("told to end", None)
             return
         if self.grace is None or not reason:

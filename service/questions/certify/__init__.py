@@ -25,7 +25,7 @@ QUESTION = FrontOrJobQuestion(
         PlainInput(
             "seconds",
             title="Time limit in seconds",
-            help="Time limit; reports what is proven so far.",
+            help="Time limit; then reports what is proven so far.",
             usual=str(SECONDS),
             served="10.0",
             limits={"gt": 0.0, "le": 20.0},

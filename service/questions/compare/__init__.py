@@ -17,7 +17,7 @@ QUESTION = FrontOrJobQuestion(
     inputs=(
         PlainInput(
             "tolerance",
-            help="Fraction of an objective's range that counts as equal.",
+            help="Fraction of an objective's range within which values count as equal.",
             usual="1e-06",
             least=0.0,
             limits={"ge": 0.0, "allow_inf_nan": False},

@@ -122,7 +122,7 @@ def _better_sentences(solved: Sequence[ComparedRun], system: System) -> list[str
 
 
 def _better_blocks(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str]]) -> list[Block]:
-    """Return which run is better where as sentences; an initial folder name keeps its case."""
+    """Return sentences that say where each run is better; a folder name at the start keeps its case."""
     folders = tuple(run.name for run in runs if isinstance(run.place, Path))
     texts = [
         [text if text.startswith(folders) else f"{text[:1].upper()}{text[1:]}" for text in sentences[system]]
@@ -268,7 +268,7 @@ def _place_in_words(place: str) -> str:
 def differences_between_jobs(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
     """Return the paths at which the tables of jobs differ, such as "load.1.force", with the value in each job.
 
-    The value is None if a job has nothing there. Names and descriptions are omitted.
+    The value is None if a job has no value at that path. Names and descriptions are omitted.
     """
     flat = [dict(_leaves(job, "")) for job in jobs]
     places = dict.fromkeys(place for leaves in flat for place in leaves)

@@ -22,7 +22,7 @@ Bare = Annotated[float | None, Note("null where no steady running was found with
 
 
 class Flywheel(Record):
-    """Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and for others."""
+    """Flywheel for one coefficient of speed fluctuation, exact and by the classical estimate, and for others."""
 
     motor: str
     """Type of drive, or "constant torque" for a job without a drive."""

@@ -48,7 +48,7 @@ class LawNumbers(Record):
     rms_torque_at_constant_speed_Nm: float
     peak_power_at_constant_speed_W: float
     peak_slider_speed_at_constant_speed_m_s: float
-    gap: Annotated[float, Note("fraction by which the law is at most worse than the best possible one")]
+    gap: Annotated[float, Note("upper bound on the fraction by which the law is worse than the best possible one")]
     proven: bool
     """Whether the gap is at most a thousandth."""
     relaxed: Annotated[bool, Note("whether the bound comes from a relaxation, which even the best law may not reach")]

@@ -90,7 +90,7 @@ QUESTION = DesignQuestion(
             "supply_pressure",
             PRESSURE,
             "Supply pressure",
-            "Greatest pressure above that of the other side; needs the bore.",
+            "Greatest pressure above the pressure on the other side; needs the bore.",
             sign="positive",
             example="160 bar",
         ),

@@ -100,7 +100,7 @@ LeverNumbers = Annotated[
             **_record_keys({"push_pressure": PRESSURE, "pull_pressure": PRESSURE}),
             **_record_keys({"extending_flow": VOLUME_FLOW, "retracting_flow": VOLUME_FLOW}),
             **_record_keys({"time_ratio": RATIO, "fitting_lesser": LENGTH, "fitting_greater": LENGTH}),
-            "notes": Annotated[list[str], Note("what is included, left out or cannot be built")],
+            "notes": Annotated[list[str], Note("which parts are included, omitted or impossible to build")],
         },
     ),
 ]

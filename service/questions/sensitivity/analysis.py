@@ -28,7 +28,7 @@ _Change = Annotated[
     Keys(
         "Change",
         "Change of a quantity: in its unit for 1 mm more of a dimension, in percent for 1 % more, and for its "
-        "tolerance; given again for a smaller dimension where a kink makes it differ.",
+        "tolerance; a second value is given for a smaller dimension if a kink makes it differ.",
         {
             "quantity": str,
             "title": str,

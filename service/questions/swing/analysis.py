@@ -115,7 +115,7 @@ SwingNumbers = Annotated[
             **_optional_keys(_location_keys("slider_position_error", way=False)),
             **_optional_keys(_location_keys("crank_position_error", way=False)),
             "extremes": Annotated[dict[str, _Curve], Note("by curve")],
-            "notes": Annotated[list[str], Note("what is undefined or left out, and why")],
+            "notes": Annotated[list[str], Note("undefined or omitted values, with reasons")],
         },
     ),
 ]

@@ -278,7 +278,7 @@ def test_a_merge_patch_does_what_its_standard_says(value: Any, changes: Any, bec
 
 
 def test_a_place_that_is_not_there_and_a_method_it_does_not_know_are_told(shared: httpx.Client) -> None:
-    assert "there is nothing at this address" in refusal_sentence(shared.get("/job"), 404)
+    assert "nothing exists at this address" in refusal_sentence(shared.get("/job"), 404)
     response = shared.put("/jobs/1")
     assert response.headers["allow"] == "GET, DELETE"
     assert "got PUT; use GET, DELETE" in refusal_sentence(response, 405)

@@ -53,7 +53,7 @@ def test_the_migrated_tables_are_those_that_the_code_knows(database: Database) -
 def test_a_store_of_a_later_release_is_refused_and_left_as_it_is(database: Database, address: str) -> None:
     with database.writing() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
-    with pytest.raises(StoreError, match="has version 9999, this software knows 0008"):
+    with pytest.raises(StoreError, match="has version 9999, this release supports 0008"):
         Store(address)
     with database.reading() as connection:
         assert connection.scalar(text("SELECT version_num FROM alembic_version")) == "9999"
@@ -472,7 +472,7 @@ def test_an_emptied_store_keeps_the_log_that_is_left_of_it(tmp_path: Path, comma
     for words in ("jobs", f"submit {job_file(tmp_path)}"):
         done = command(*words.split(), "--store", file)
         assert (done.exit_code, done.stdout) == (2, "")
-        assert "belongs to one that was deleted or truncated" in done.stderr
+        assert "belongs to a store that was deleted or truncated" in done.stderr
     assert log.read_bytes() == b"the latest jobs"
 
 
