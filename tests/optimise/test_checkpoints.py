@@ -227,7 +227,7 @@ def test_a_search_that_comes_to_another_step_is_refused() -> None:
     other: list[Record] = []
     solve(replace(given, settings=replace(given.settings, seed=6)), keep=other.append)
     foreign = tuple(replace(record, identity=records[0].identity) for record in other)
-    with pytest.raises(ForeignRecords, match="reached another step"):
+    with pytest.raises(ForeignRecords, match="reached a different step"):
         solve(given, resume=(records[0], *foreign[1:]))
 
 

@@ -163,7 +163,7 @@ def test_axes_before_the_last_are_kept() -> None:
         ([[0.04, 0.1, 1e-30j]], ["stroke"], "arrays of real numbers"),
         ([[0.04, 0.1, 0.0]], ["strokes"], "did you mean stroke"),
         ([[0.04, 0.1, 0.0]], "stroke", r"write \['stroke'\]"),
-        ([[0.04, 0.1, 0.0]], ["position_error"], "needs tolerances; got none; add"),
+        ([[0.04, 0.1, 0.0]], ["position_error"], "needs tolerances; got none; for example, add"),
         ([[0.04, 0.1, 0.0]], ["self_locking_margin"], "needs friction"),
     ],
 )

@@ -101,7 +101,8 @@ def test_a_run_cancelled_early_has_no_statistics() -> None:
 def test_ideal_joints_are_refused() -> None:
     ideal = replace(MACHINE, clearance=None)
     with pytest.raises(
-        InputError, match=r"needs a joint with clearance; all joints of this job are ideal; add .* \[clearance\]"
+        InputError,
+        match=r"needs a joint with clearance; all joints of this job are ideal; for example, add .* \[clearance\]",
     ):
         numbers(ideal, LINKAGE)
     with pytest.raises(InputError, match="needs a joint with clearance; all joints are ideal"):

@@ -48,7 +48,7 @@ def test_the_figure_has_a_closed_line_for_each_cylinder() -> None:
 
 
 def test_a_machine_without_a_cylinder_is_told_what_to_add() -> None:
-    with pytest.raises(InputError, match="needs a cylinder; this job has none; add to the job"):
+    with pytest.raises(InputError, match="needs a cylinder; this job has none; for example, add to the job"):
         analysis.numbers(Mechanism(speed=1.0), LINKAGE)
 
 

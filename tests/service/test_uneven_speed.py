@@ -192,5 +192,5 @@ def test_profiles_that_cannot_be_are_refused(
 
 
 def test_a_constant_speed_is_told_what_to_add() -> None:
-    with pytest.raises(InputError, match="the speed of this job is constant; add to the job"):
+    with pytest.raises(InputError, match="the speed of this job is constant; for example, add to the job"):
         analysis.numbers(Mechanism(speed=3.0), Linkage(0.03, 0.1, 0.0))

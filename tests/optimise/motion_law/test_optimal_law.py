@@ -186,7 +186,7 @@ def test_no_random_law_is_better_than_the_bound() -> None:
 REFUSALS: list[tuple[dict[str, Any], str]] = [
     (
         {"torque_limit": 20.0},
-        r"the loads take 173\.\d+ J in a turn, a mean torque of 27\.\d+ N m; torque_limit is 20 N m; raise it",
+        r"the loads absorb 173\.\d+ J in a turn, a mean torque of 27\.\d+ N m; torque_limit is 20 N m; raise it",
     ),
     (
         {"torque_limit": 60.0, **NARROW},
