@@ -1,5 +1,6 @@
 """Bookmarked designs of a front, each with name, note, star and the reasons for a decision."""
 
+from dataclasses import replace
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -22,7 +23,7 @@ from .front_files import download_response, file_endpoint_options
 from .fronts import Cells, ColumnModel, column_models
 from .problem_documents import problem_responses
 from .settings import PLAIN_DIGITS, StoreDep, UnitsParameter
-from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
+from .stored_fronts import LONGEST, SHORTEST, Allowed, FrontDep, StoredFront
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
 
@@ -50,13 +51,15 @@ class NewBookmark(_Remarks):
     decided: revokes an earlier decision. author: name of the person, for the history.
 
     design: its number. dimensions: column values from a table of designs that replace those of the design; without a
-    design, all lengths, extra variables and choices. Lengths outside the ranges of the job are allowed.
+    design, all lengths, extra variables and choices. Lengths outside the ranges of the job are allowed. allow: allowed
+    deviations from requirements, by column.
     """
 
     design: int | None = Field(None, ge=1, le=2**31, examples=[1])
     dimensions: dict[Annotated[str, Field(max_length=500)], float | Annotated[str, Field(max_length=500)]] = Field(
         {}, max_length=200, examples=[{"rod_mm": 330.0}]
     )
+    allow: Allowed = {}
     name: _NAME = Field("", examples=["Round numbers"])
 
 
@@ -76,7 +79,8 @@ class BookmarkedDesign(BaseModel):
     changed: whether its dimensions differ from those of its origin. numbers: query that gives the origin these
     dimensions: empty if they are equal, null if none can. decision: its decision in words, or empty. cells: every
     quantity and the slacks. broken: columns of unmet requirements. outside: columns of dimensions outside the job's
-    ranges. faults: both in words.
+    ranges. faults: both in words. allowed: allowed deviations from requirements, by column. deviations: those within
+    them, in words.
     """
 
     number: int = Field(ge=1, examples=[1])
@@ -96,6 +100,8 @@ class BookmarkedDesign(BaseModel):
     broken: list[str]
     outside: list[str]
     faults: list[str] = Field(examples=[["misses stroke"]])
+    allowed: Allowed
+    deviations: list[str] = Field(examples=[["stroke 180.008 mm, within the allowed ±0.05 mm"]])
 
 
 class HistoryEntryModel(BaseModel, from_attributes=True):
@@ -136,9 +142,12 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
     """Bookmark a design with a name, a note and a star."""
     design = _requested_design(stored_front, request)
-    _bookmark_variation(stored_front, design)  # reject what cannot be computed before it is stored
-    fields: dict[str, Any] = request.model_dump(exclude={"dimensions"})
-    bookmark = bookmark_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
+    _bookmark_variation(
+        stored_front, replace(design, allowed=request.allow)
+    )  # reject what cannot be computed before it is stored
+    fields: dict[str, Any] = request.model_dump(exclude={"dimensions", "allow"})
+    fields |= {"dimensions": design.values, "variant": design.variant, "allowed": request.allow}
+    bookmark = bookmark_design(store, stored_front.job.id, **fields)
     return _bookmark_model(stored_front, bookmark)
 
 
@@ -177,6 +186,7 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
         head |= {
             "note": "; ".join(bookmark.notes),
             "reason": bookmark.reason,
+            "allowed": "; ".join(varied.deviations),
             "outside_the_job": ", ".join(varied.outside),
         }
         rows.append(head | convert_rows([varied.row], units)[0])
@@ -213,7 +223,9 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
 
 
 def _bookmarked_design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
-    return StoredDesign(stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
+    return StoredDesign(
+        stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant, bookmark.allowed
+    )
 
 
 def _bookmark_variation(stored_front: StoredFront, design: StoredDesign) -> Variation:
@@ -238,6 +250,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
         broken=varied.broken,
         outside=varied.outside,
         faults=faults,
+        deviations=varied.deviations,
     )
 
 
@@ -246,4 +259,5 @@ def _design_query(design: StoredDesign) -> dict[str, float | list[str]]:
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
     pairs = zip(map(column_of_variable, design.part.mechanism.varying), design.values[3:], strict=True)
     values = [f"{column}={value * unit.factor!r}" for (column, unit), value in pairs]
-    return {**lengths, **({"value": values} if values else {})}
+    allow = [f"{column}={amount!r}" for column, amount in design.allowed.items()]
+    return {**lengths, **({"value": values} if values else {}), **({"allow": allow} if allow else {})}

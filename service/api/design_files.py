@@ -157,4 +157,4 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
 
 def _bookmarks_revision(request: RequestedDesign, store: Store) -> int:
     """Return a number that changes with each edit of a job's bookmarks, which reports contain."""
-    return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))
+    return hash(repr(bookmarks_of(store, request.stored_front.job.id)))

@@ -19,7 +19,7 @@ from .computing import LongRoute
 from .front_files import SEALED, file_endpoint_options
 from .problem_documents import problem_responses
 from .settings import SettingsDep, StoreDep, UnitsParameter
-from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
+from .stored_fronts import AllowedDep, FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,18 +81,30 @@ def list_figures(stored_front: FrontDep) -> FiguresModel:
 
 @router.get("/jobs/{number}/figures/{name}.png", **file_endpoint_options("image/png"))
 def draw_png(
-    stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
+    stored_front: FrontDep,
+    name: Name,
+    numbers: NumbersDep,
+    allowed: AllowedDep,
+    store: StoreDep,
+    units: UnitsParameter = "metric",
 ) -> Response:
     """Draw a figure; the datasheet of a design accepts other numbers."""
-    return _cached_figure_response(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
+    bookmarks = bookmarks_of(store, stored_front.job.id)
+    return _cached_figure_response(stored_front, name, "png", numbers, allowed, bookmarks, units)
 
 
 @router.get("/jobs/{number}/figures/{name}.svg", **file_endpoint_options("image/svg+xml"))
 def draw_svg(
-    stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
+    stored_front: FrontDep,
+    name: Name,
+    numbers: NumbersDep,
+    allowed: AllowedDep,
+    store: StoreDep,
+    units: UnitsParameter = "metric",
 ) -> Response:
     """Draw a figure; the datasheet of a design accepts other numbers."""
-    return _cached_figure_response(stored_front, name, "svg", numbers, bookmarks_of(store, stored_front.job.id), units)
+    bookmarks = bookmarks_of(store, stored_front.job.id)
+    return _cached_figure_response(stored_front, name, "svg", numbers, allowed, bookmarks, units)
 
 
 def _cached_figure_response(
@@ -100,6 +112,7 @@ def _cached_figure_response(
     name: str,
     kind: Kind,
     numbers: Numbers | None,
+    allowed: Numbers,
     bookmarks: Sequence[Bookmark],
     units: System,
 ) -> Response:
@@ -118,7 +131,7 @@ def _cached_figure_response(
 
     if single is None:
         return figure_response(stored_front.cached_item(name, cache_kind, draw), kind)
-    request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
+    request = requested_design(stored_front, int(single[1]), numbers, bookmarks, allowed)
     drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
     file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.file_stem}-sheet.{kind}"
     return figure_response(drawn, kind, {"Content-Disposition": f'inline; filename="{file}"'})

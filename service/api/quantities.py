@@ -123,8 +123,8 @@ class InputModel(BaseModel):
 class TopicModel(BaseModel):
     """Question about a design. path: path below that of the design. title: heading. shows: its subject, in words.
 
-    command: equivalent command of the command line. figure: whether the path with .svg gives a figure. posted: whether
-    the inputs form the request body.
+    premise: what it needs of a machine, "" if any machine has it. command: equivalent command of the command line.
+    figure: whether the path with .svg gives a figure. posted: whether the inputs form the request body.
     """
 
     name: str = Field(examples=["balance"])
@@ -132,8 +132,9 @@ class TopicModel(BaseModel):
     command: str = Field(examples=["analyse --show balance"])
     figure: bool
     posted: bool = False
-    title: str = Field(examples=["Balance"])
+    title: str = Field(examples=["Shaking forces"])
     shows: str = Field(examples=["shaking force and moment"])
+    premise: str = Field("", examples=["a motor"])
     inputs: list[InputModel] = Field(examples=[[]])
 
 
@@ -222,7 +223,7 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion, path: str, command: st
         )
         for item in question.inputs
     ]
-    title = question.name.replace("_", " ").capitalize()
+    title = question.title or question.name.replace("_", " ").capitalize()
     return TopicModel(
         name=question.name,
         path=path,
@@ -231,5 +232,6 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion, path: str, command: st
         posted=isinstance(question, FrontOrJobQuestion) and question.posted,
         title=title,
         shows=question.shows,
+        premise=question.premise.words if isinstance(question, DesignQuestion) and question.premise else "",
         inputs=inputs,
     )

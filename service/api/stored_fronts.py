@@ -9,6 +9,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Annotated
 
 from fastapi import Depends, Path, Query
@@ -167,12 +168,18 @@ SHORTEST = 1e-4  # mm
 _SAME = 1e-9  # relative tolerance of a length: an address may repeat the length of the design
 
 Length = Annotated[float, Field(ge=SHORTEST, le=LONGEST, allow_inf_nan=False)]
+Allowed = Annotated[
+    dict[Annotated[str, Field(max_length=500)], Annotated[float, Field(gt=0.0, allow_inf_nan=False)]],
+    Field(max_length=200, examples=[{}]),
+]
+"""Allowed deviations from requirements, by column and in its unit."""
 Numbers = Mapping[str, float]
 """Numbers of a design by column, each in the column's unit."""
 _LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 
 _OTHER = "mm, replaces the design's value; crank_mm, rod_mm and offset_mm must be given together"
 _VALUE = "another number that varies, by column, such as slider_mass_kg=1.2; repeatable"
+_ALLOW = "allowed deviation from a requirement, by column, such as stroke_mm=0.05; repeatable"
 
 
 def _changed_numbers(
@@ -205,6 +212,15 @@ def _parse_column_value(text: str) -> tuple[str, float]:
         raise InputError(f"a value must be COLUMN=NUMBER; got {text!r}; write it like slider_mass_kg=1.2")
     return column, value
 
+
+def _allowed_deviations(
+    allow: Annotated[list[Annotated[str, Field(max_length=500)]], Query(max_length=200, description=_ALLOW)] = [],  # noqa: B006
+) -> Numbers:
+    return dict(map(_parse_column_value, allow))
+
+
+AllowedDep = Annotated[Numbers, Depends(_allowed_deviations)]
+"""Allowed deviations in an address, by column."""
 
 NumbersDep = Annotated[Numbers | None, Depends(_changed_numbers)]
 """Numbers that an address sets for a design, None for those of the design itself. Raises `InputError` if it sets only
@@ -245,7 +261,7 @@ class RequestedDesign:
     @property
     def cache_key(self) -> str:
         """Key of the design in the cache of the front."""
-        return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
+        return f"design_{self.number}" + (f" {self.design.values} {self.design.allowed}" if self.changed else "")
 
     def cached_file(self, kind: str, make: Callable[[], bytes]) -> bytes:
         """Return a cached file of the design that shows its name, or create and cache it."""
@@ -262,9 +278,15 @@ class RequestedDesign:
 
 
 def requested_design(
-    stored_front: StoredFront, number: int, numbers: Numbers | None, bookmarks: Sequence[Bookmark] = ()
+    stored_front: StoredFront,
+    number: int,
+    numbers: Numbers | None,
+    bookmarks: Sequence[Bookmark] = (),
+    allowed: Numbers = MappingProxyType({}),
 ) -> RequestedDesign:
     """Return a design on a front with other numbers.
+
+    allowed: allowed deviations from requirements, by column; without any, those of its bookmark.
 
     Raises `NotFound`, and `InputError` if it does not rotate fully.
     """
@@ -281,13 +303,17 @@ def requested_design(
         values.pop(name) / 1e3 if name in values else value
         for name, value in zip(_LENGTHS, stored.values[:3], strict=True)
     ]
-    return RequestedDesign(stored_front, number, design_with_numbers(stored, lengths, values), True, bookmarks)
+    changed = replace(design_with_numbers(stored, lengths, values), allowed=allowed)
+    request = RequestedDesign(stored_front, number, changed, True, bookmarks)
+    if allowed or not request.bookmark:
+        return request
+    return replace(request, design=replace(changed, allowed=request.bookmark.allowed))
 
 
 def _requested_design(
-    stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep, store: StoreDep
+    stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep, allowed: AllowedDep, store: StoreDep
 ) -> RequestedDesign:
-    return requested_design(stored_front, design, numbers, bookmarks_of(store, stored_front.job.id))
+    return requested_design(stored_front, design, numbers, bookmarks_of(store, stored_front.job.id), allowed)
 
 
 RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design)]

@@ -1,5 +1,6 @@
 """Single designs: their curves and requirements, also with other lengths while a user changes them."""
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
@@ -25,6 +26,7 @@ from ..designs.judged_requirements import (
     violations_of,
 )
 from ..questions.design_analysis import with_undefined_values
+from ..questions.discovery import DESIGN_QUESTIONS
 from ..runs.result import json_ready
 from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import QuickRoute
@@ -32,7 +34,7 @@ from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
 from .problem_documents import problem_responses
 from .settings import PLAIN_DIGITS, StoreDep
-from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length, RequestedDesign, requested_design
+from .stored_fronts import LONGEST, Allowed, DesignNumber, FrontDep, Length, RequestedDesign, requested_design
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
 
@@ -44,7 +46,8 @@ class RequirementsModel(OfDesign):
 
     name: name of the design: that of its bookmark, or its number. bookmark: number of its bookmark, if any. ranges:
     minimum and maximum of crank, rod, offset and the extra variables, by column. speed_rpm: crank speed, positive
-    counter-clockwise. names: names of quantities as in job files, by column. tolerances: whether the machine has any.
+    counter-clockwise. lacking: questions that need what the machine does not have. names: names of quantities as in
+    job files, by column. tolerances: whether the machine has any.
     """
 
     name: str = Field(examples=["Round numbers", "design 3"])
@@ -54,6 +57,7 @@ class RequirementsModel(OfDesign):
     slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
     speed_rpm: float = Field(examples=[300.0])
     tolerances: bool
+    lacking: list[str] = Field(examples=[["pump"]])
     names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
 
 
@@ -64,7 +68,7 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
 
     hold: the changed length; the others then follow, so that rules with exact values still hold; null leaves all
     lengths as given. nearest: if nothing holds for the changed length, take the nearest length for which the rules hold
-    instead of an error.
+    instead of an error. allow: allowed deviations from requirements, by column.
     """
 
     crank_mm: Length = Field(examples=[40.0])
@@ -75,6 +79,7 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
     )
     angles: int = Field(180, ge=0, le=MOST)
     hold: Literal["crank", "rod", "offset"] | None = None
+    allow: Allowed = {}
     nearest: bool = False
 
 
@@ -82,7 +87,8 @@ class WhatIfModel(OfDesign):
     """Design with other lengths, compared with its front. name, bookmark: as in `RequirementsModel`.
 
     design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of
-    unmet requirements. outside: columns of lengths outside their range. faults: both in words. dominated_by: numbers of
+    unmet requirements. outside: columns of lengths outside their range. faults: both in words. allowed: allowed
+    deviations; deviations: those within them, in words. dominated_by: numbers of
     the front designs that dominate this one; dominates: of those that it dominates; largest difference first, at most
     20. violated, violations: as for a design on the front. cycle: null if no curves were requested.
     """
@@ -95,6 +101,8 @@ class WhatIfModel(OfDesign):
     broken: list[str] = Field(examples=[["stroke_mm"]])
     outside: list[str] = Field(examples=[[]])
     faults: list[str] = Field(examples=[["misses stroke"]])
+    allowed: Allowed
+    deviations: list[str] = Field(examples=[["stroke 180.008 mm, within the allowed ±0.05 mm"]])
     violated: Violated
     violations: Violations
     dominated_by: list[int] = Field(examples=[[12, 4]])
@@ -134,6 +142,11 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber, store: Store
         speed_rpm=speed_rpm(stored.mechanism),
         names=quantity_names(stored.part),
         tolerances=stored.mechanism.tolerances.are_stated,
+        lacking=[
+            name
+            for name, question in DESIGN_QUESTIONS.items()
+            if question.premise and not question.premise.is_met(stored.part, stored.mechanism)
+        ],
     )
 
 
@@ -153,13 +166,15 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
             stored, lengths, request.hold
         )
     stored = design_with_numbers(stored, lengths)
+    requested = RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id))
+    allow = request.allow or (requested.bookmark.allowed if requested.bookmark else {})
+    stored = replace(stored, allowed=allow)
     changed = judged_variation(stored, stored_front.result, stored_front.minimised_objectives)
     row, undefined = with_undefined_values(
         changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion
     )
     cycle = cycle_model(stored, request.angles) if request.angles else None
     violated = violations_of(stored.mechanism, row)
-    requested = RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id))
     return WhatIfModel(
         job=stored_front.job.id,
         number=design,
@@ -171,6 +186,8 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
         broken=changed.broken,
         outside=changed.outside,
         faults=faults_in_words(row, changed.broken, changed.outside),
+        allowed=allow,
+        deviations=changed.deviations,
         violated=json_ready(violated),
         violations=violations_in_words(violated, row),
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],

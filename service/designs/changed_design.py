@@ -16,7 +16,7 @@ from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of_columns
 from .design_selection_options import minimised_values, target_scales
-from .judged_requirements import ranges_as_requirements, requirements_of, unmet_columns
+from .judged_requirements import deviations_in_words, ranges_as_requirements, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
 _SAME = 1e-9  # relative to an objective's range over the front, or to a number: smaller differences are rounding
@@ -32,7 +32,8 @@ Lengths = tuple[float, float, float]
 class Variation:
     """Design with other numbers, judged against its job and front. row: every quantity and the slacks.
 
-    broken: columns of unmet constraints. outside: columns whose range is left. dominated_by: positions of the front
+    broken: columns of constraints missed by more than is allowed for the design. deviations: those missed by less, in
+    words. outside: columns whose range is left. dominated_by: positions of the front
     designs that dominate it. dominates: positions of the front designs that it dominates. Both lists begin with the
     largest difference.
     """
@@ -40,6 +41,7 @@ class Variation:
     row: Row
     design: StoredDesign
     broken: list[str]
+    deviations: list[str]
     outside: list[str]
     dominated_by: list[int]
     dominates: list[int]
@@ -84,11 +86,13 @@ def judged_variation(design: StoredDesign, result: Result, minimised: Array) -> 
 
     columns = columns_of_designs(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     row = rows_of_columns(columns)[0]
+    rules = requirements_of(design.part, design.allowed)
     return Variation(
         row=row,
         design=design,
-        broken=unmet_columns(requirements_of(design.part), row)
+        broken=unmet_columns(rules, row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
+        deviations=deviations_in_words(rules, row),
         outside=unmet_columns(ranges_as_requirements(design.part), row),
         **_dominating_and_dominated(result, row, minimised),
     )

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.kinds import System, metric_key, metric_unit_in, name_unit_and_factor_of_key
+from ...objectives.kinds import System, metric_key, metric_unit_in, name_unit_and_factor_of_key, unit_text
+from ..render.numerals import format_number
 from ..runs.result import Cell, Result, Row
 from .columns import find_column
 
@@ -26,6 +29,7 @@ class Requirement:
     """Quantity that must lie between two values, in its unit; None leaves a side open.
 
     column: its key in the designs. slack: key of the distance to the nearer bound, negative if the bound is violated.
+    allowed: deviation that somebody allows for one design.
     """
 
     quantity: str
@@ -35,9 +39,18 @@ class Requirement:
     lower: float | None
     upper: float | None
     slack: str
+    allowed: float = 0.0
 
     def missed_by(self, row: Row) -> float | None:
-        """Return the amount by which a design misses the requirement: zero if met, None if it lacks the quantity."""
+        """Return the amount by which a design misses the requirement; None if it lacks the quantity.
+
+        Zero if it meets the requirement, or deviates by no more than is allowed.
+        """
+        missed = self.deviation(row)
+        return 0.0 if missed is not None and missed <= self.allowed * (1.0 + MET) else missed
+
+    def deviation(self, row: Row) -> float | None:
+        """Return the amount by which a design misses the bounds themselves: zero if met, None without the quantity."""
         value = _number_or_none(row.get(self.column))
         if value is None:
             return None
@@ -93,8 +106,11 @@ class Judgement:
     choices: list[JudgedChoice]
 
 
-def requirements_of(part: Problem) -> list[Requirement]:
-    """Return the constraints of a problem without choices; default minimum values replace missing ones."""
+def requirements_of(part: Problem, allowed: Mapping[str, float] = MappingProxyType({})) -> list[Requirement]:
+    """Return the constraints of a problem without choices; default minimum values replace missing ones.
+
+    allowed: allowed deviations by column. Raises `InputError` for one that no constraint has.
+    """
     from ...optimise.problem.constraint_violation import constraints_with_floors
 
     requirements = []
@@ -104,7 +120,12 @@ def requirements_of(part: Problem) -> list[Requirement]:
         lower, upper = (
             None if end is None else end * quantity.unit.factor for end in (constraint.lower, constraint.upper)
         )
-        requirements.append(Requirement(*names, lower, upper, f"slack_{quantity.field}"))
+        deviation = allowed.get(quantity.field, 0.0)
+        requirements.append(Requirement(*names, lower, upper, f"slack_{quantity.field}", deviation))
+    unknown = sorted({*allowed} - {item.column for item in requirements})
+    if unknown:
+        columns = ", ".join(item.column for item in requirements) or "it has none"
+        raise InputError(f"only requirements of this job allow deviations: {columns}; got {unknown[0]!r}; leave it out")
     return requirements
 
 
@@ -132,6 +153,20 @@ def quantity_names(part: Problem) -> dict[str, str]:
 def unmet_columns(rules: Iterable[Requirement], row: Row) -> list[str]:
     """Return the columns of the rules that a design does not meet."""
     return [rule.column for rule in rules if rule.missed_by(row) != 0.0]
+
+
+def deviations_in_words(rules: Iterable[Requirement], row: Row, system: System = "metric") -> list[str]:
+    """Describe deviations within what is allowed: "stroke 180.008 mm, within the allowed ±0.05 mm"."""
+    texts = []
+    for rule in rules:
+        if rule.deviation(row) and rule.missed_by(row) == 0.0:
+            unit, factor = metric_unit_in(rule.unit, system)
+            value, allowed = float(row[rule.column]) * factor, rule.allowed * factor
+            digits = min(12, max(6, math.ceil(math.log10(abs(value / allowed))) + 2)) if value else 6
+            sign = "±" if rule.lower == rule.upper else ""
+            numbers = [f"{format_number(number, digits)} {unit_text(unit)}".rstrip() for number in (value, allowed)]
+            texts.append(f"{rule.title} {numbers[0]}, within the allowed {sign}{numbers[1]}")
+    return texts
 
 
 def faults_in_words(row: Row, broken: Iterable[str], outside: Iterable[str]) -> list[str]:

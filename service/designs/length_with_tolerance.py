@@ -22,6 +22,11 @@ def decimals_of(tolerance: float) -> int:
     return max(0, -exponent) if isinstance(exponent, int) else 0
 
 
+def format_length(length: float, tolerance: float) -> str:
+    """Return a length with its tolerance, or with five significant digits if it has none."""
+    return format_toleranced(length, tolerance) if tolerance else f"{length:.5g}"
+
+
 def format_toleranced(length: float, tolerance: float) -> str:
     """Return a length with as many decimals as its tolerance, and the tolerance."""
     decimals = decimals_of(tolerance)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -25,12 +25,14 @@ _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 class StoredDesign:
     """Design of a stored front. values: crank, rod, offset, m, and each extra variable, SI.
 
-    part: problem that it solves, with its choices applied. variant: index of these choices, counted from 0.
+    part: problem that it solves, with its choices applied. variant: index of these choices, counted from 0. allowed:
+    deviations from requirements that somebody allows for it, by column.
     """
 
     part: Problem
     values: tuple[float, ...]
     variant: int = 0
+    allowed: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def mechanism(self) -> Mechanism:

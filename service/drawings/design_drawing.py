@@ -15,7 +15,15 @@ from ..designs.stored_designs import StoredDesign
 from . import layers as on
 from .dimensions import Lettering, aligned_dimension, dimension
 from .lever_drawing import lever_drawing
-from .linkage_shapes import LinkageSizes, fixed_shapes, lengths_in_words, linkage_sizes, moving_shapes, pin_positions
+from .linkage_shapes import (
+    LinkageSizes,
+    fixed_shapes,
+    lengths_in_words,
+    linkage_sizes,
+    moving_shapes,
+    pin_positions,
+    widths_in_words,
+)
 from .shapes import Anchor, Arc, Dimension, Drawing, Label, Line, Point, Shape
 from .swing_parts import SwingSizes, fixed_swing_shapes, half_body_side, moving_swing_shapes, swing_sizes
 from .titles import TEXT, TRUE_SCALE, with_title
@@ -56,16 +64,18 @@ def linkage_drawing(
     `AssemblyError` for a linkage that does not rotate fully.
     """
     look = linkage_sizes(mechanism, linkage)
-    size = look.size
+    size, tolerances = look.size, tolerances_of(mechanism, linkage)
     pin, slider = pin_positions(linkage, crank_angle)
     shapes: list[Shape] = [
         *fixed_shapes(linkage, look, bearing_below=pin[1] >= 0.0),
         *moving_shapes(pin, slider, look),
-        *_stroke_dimensions(pin, slider, look, Lettering(TEXT * size, system), tolerances_of(mechanism, linkage)),
+        *_stroke_dimensions(pin, slider, look, Lettering(TEXT * size, system), tolerances),
     ]
     title = f"{name}, {design}" if design else name
     layers = on.GAS_LAYERS if look.barrels else on.LAYERS
-    return with_title(layers, shapes, look.extent, size, title, _turn_notes(linkage, crank_angle, look, system))
+    return with_title(
+        layers, shapes, look.extent, size, title, _turn_notes(linkage, crank_angle, look, tolerances, system)
+    )
 
 
 def swing_drawing(
@@ -87,13 +97,13 @@ def swing_drawing(
     drawn = swing_sizes(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)
     pin, slider = pin_positions(drawn.linkage, angle)
-    letters = Lettering(TEXT * drawn.look.size, system)
+    letters, tolerances = Lettering(TEXT * drawn.look.size, system), tolerances_of(mechanism, drawn.linkage)
     shapes: list[Shape] = [
         *fixed_swing_shapes(drawn),
         *moving_swing_shapes(drawn, angle),
-        *_swing_dimensions(drawn, angle, pin, slider, letters, tolerances_of(mechanism, drawn.linkage)),
+        *_swing_dimensions(drawn, angle, pin, slider, letters, tolerances),
     ]
-    notes = _swing_notes(drawn, angle, system)
+    notes = _swing_notes(drawn, angle, tolerances, system)
     return with_title(
         on.SWING_LAYERS, shapes, drawn.extent, drawn.look.size, f"{name}, {design}" if design else name, notes
     )
@@ -178,30 +188,30 @@ def _outer_side(pin: Point, slider: Point) -> float:
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 
 
-def _turn_notes(linkage: Linkage, angle: float, look: LinkageSizes, system: System) -> tuple[str, ...]:
+def _turn_notes(
+    linkage: Linkage, angle: float, look: LinkageSizes, tolerances: Mapping[str, float], system: System
+) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
-    widths = "Link widths are to scale; slider and pins are schematic."
     return (
-        f"{lengths_in_words(linkage, system, stroke=True)}.",
+        f"{lengths_in_words(linkage, tolerances, system, stroke=True)}.",
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.has_sections else "Link widths, slider and pins are schematic.",
+        widths_in_words(look),
         *(["Bore and clearance of the cylinder are those of the job."] if look.barrels else []),
     )
 
 
-def _swing_notes(drawn: SwingSizes, angle: float, system: System) -> tuple[str, ...]:
+def _swing_notes(drawn: SwingSizes, angle: float, tolerances: Mapping[str, float], system: System) -> tuple[str, ...]:
     look, swing = drawn.look, drawn.swing
     unit, factor = metric_unit_in("mm", system)
     start, end, drawn_angle = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
-    widths = "Link widths are to scale; slider and pins are schematic."
     driven = "The crank is driven." if drawn.cylinder is None else "It is driven; the cylinder is schematic."
     return (
-        f"{lengths_in_words(drawn.linkage, system)}.",
+        f"{lengths_in_words(drawn.linkage, tolerances, system)}.",
         f"Swings from {start} to {end} deg; drawn at {drawn_angle} deg, both ends dashed.",
-        f"The slider goes from {factor * look.inner[0]:.7g} to {factor * look.outer[0]:.7g} {unit}. {driven}",
+        f"The slider goes from {factor * look.inner[0]:.5g} to {factor * look.outer[0]:.5g} {unit}. {driven}",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.has_sections else "Link widths, slider and pins are schematic.",
+        widths_in_words(look),
         *(() if drawn.body is None else ("The schematic square on the crank is centred on its mass centre.",)),
     )

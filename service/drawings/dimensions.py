@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from ...objectives.kinds import System, metric_unit_in
-from ..designs.length_with_tolerance import format_toleranced
+from ..designs.length_with_tolerance import format_length
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
 
@@ -37,7 +37,7 @@ def dimension(
 ) -> Dimension:
     """Return the dimension between two points along `angle`, deg, with its line through a given point.
 
-    tolerance: tolerance, mm; it sets the digits of the text, seven if there is none. If arrows and text do not fit
+    tolerance: tolerance, mm; it sets the digits of the text, five if there is none. If arrows and text do not fit
     between the points, they are drawn outside, with the text beyond the end.
     """
     turn, height = math.radians(angle), look.height
@@ -48,7 +48,7 @@ def dimension(
         start, end = end, start
     length = _dot(_difference(feet[1], feet[0]), direction)
     displayed, off = look.display_factor * length, look.display_factor * tolerance
-    text = format_toleranced(displayed, off) if tolerance else f"{displayed:.7g}"
+    text = format_length(displayed, off)
     wide, arrow = WIDE * height * len(text), _ARROW * height
     fits = length > wide + 2.6 * arrow
     parts: list[Line | Wedge | Label] = []

@@ -76,8 +76,8 @@ def dxf_document(drawing: Drawing) -> Document:
 def _create_dimension_style(document: Document, drawing: Drawing) -> None:
     """Create the style with which CAD redraws the dimensions as they are drawn here."""
     height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
-    # Enough decimals for seven digits of the size; DXF allows at most eight.
-    decimals = min(8, max(0, 6 - math.floor(math.log10(drawing.size))))
+    # Enough decimals for five digits of the size; DXF allows at most eight.
+    decimals = min(8, max(0, 4 - math.floor(math.log10(drawing.size))))
     values = {
         "dimtxt": height, "dimasz": 1.2 * height, "dimexo": 0.4 * height, "dimexe": 0.6 * height,
         "dimgap": 0.4 * height, "dimscale": 1.0, "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals,

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ...model.cycle.gas_work import cylinder_loads
@@ -9,7 +10,8 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.clearance import Bar
 from ...model.machine.mechanism import Mechanism
-from ...objectives.kinds import LENGTH, System
+from ...objectives.kinds import LENGTH, System, metric_unit_in
+from ..designs.length_with_tolerance import format_length
 from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
 
@@ -32,9 +34,9 @@ class LinkageSizes:
 
     inner, outer: slider pins at the dead centres, or at the ends of a swing. slider_range: minimum and maximum slider
     position. extent: approximate left, bottom, right and top of the moving parts. crank_width, rod_width: widths of the
-    links. block: height of the slider; the bore for a piston. slider_size: two thirds of its length. pin: radius of
-    pins. barrels: barrels of cylinders. has_sections: whether a link has a section, so that its width is true;
-    everything else is schematic.
+    links. block: height of the slider; the bore for a piston. slider_size: two thirds of its length. pins: radii
+    of crank pivot, crank pin and slider pin. barrels: barrels of cylinders. has_sections: whether a link has a section,
+    so that its width is true. has_pins: whether the pins are true; everything else is schematic.
     """
 
     crank: float
@@ -48,8 +50,9 @@ class LinkageSizes:
     rod_width: float
     block: float
     slider_size: float
-    pin: float
+    pins: tuple[float, float, float]
     has_sections: bool
+    has_pins: bool
     barrels: tuple[Barrel, ...] = ()
 
     @property
@@ -113,7 +116,10 @@ def linkage_sizes_between(
     usual = min(0.05 * (l + r), 0.5 * r)
     crank, rod = (_MM * link.width if isinstance(link, Bar) else usual for link in described)
     block = max(0.16 * (r + max(r, abs(e))), 0.05 * (max(map(abs, slider_range)) + r))
-    pin = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r)
+    usual_pin, strength = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r), mechanism.strength
+    pins = (usual_pin, usual_pin, usual_pin)
+    if strength is not None:
+        pins = (0.5e3 * strength.crank_pivot, 0.5e3 * strength.crank_pin, 0.5e3 * strength.slider_pin)
     half = 0.5 * crank
     extent = (
         min(swept[0] - half, slider_range[0] - 0.95 * block),
@@ -123,15 +129,36 @@ def linkage_sizes_between(
     )
     has_sections = any(isinstance(link, Bar) for link in described)
     return LinkageSizes(
-        r, l, e, (ends[0], e), (ends[1], e), slider_range, extent, crank, rod, block, block, pin, has_sections
+        *(r, l, e, (ends[0], e), (ends[1], e), slider_range, extent, crank, rod, block, block),
+        pins=pins,
+        has_sections=has_sections,
+        has_pins=strength is not None,
     )
 
 
-def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
-    """Return the dimensions of a linkage, its stroke on request, and its branch, as text."""
+def lengths_in_words(
+    linkage: Linkage, tolerances: Mapping[str, float], system: System = "metric", *, stroke: bool = False
+) -> str:
+    """Return the dimensions of a linkage, its stroke on request, and its branch, as text.
+
+    tolerances: those of the dimensions, mm, which set their decimals.
+    """
     names, unit = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
-    lengths = (f"{name} {unit.factor * float(getattr(linkage, name)):.{digits}g} {unit.symbol}" for name in names)
-    return f"{', '.join(lengths)}; {linkage.branch} branch"
+    factor = metric_unit_in("mm", system)[1]
+    lengths = [
+        format_length(unit.factor * float(getattr(linkage, name)), factor * tolerances.get(name, 0.0)).partition(" ")[0]
+        for name in names
+    ]
+    texts = (f"{name} {length} {unit.symbol}" for name, length in zip(names, lengths, strict=True))
+    return f"{', '.join(texts)}; {linkage.branch} branch"
+
+
+def widths_in_words(look: LinkageSizes) -> str:
+    """Return which parts are to scale and which are schematic."""
+    parts = {"link widths": look.has_sections, "pins": look.has_pins, "slider": False}
+    true, schematic = (" and ".join(name for name, known in parts.items() if known is state) for state in (True, False))
+    text = f"{true} are to scale; the {schematic} {'are' if ' and ' in schematic else 'is'} schematic." if true else ""
+    return text.capitalize() or "Link widths, slider and pins are schematic."
 
 
 def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
@@ -143,7 +170,7 @@ def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
 def moving_shapes(pin: Point, slider: Point, look: LinkageSizes) -> list[Shape]:
     """Return slider, rod and crank with their pins, for given positions of the crank pin and the slider pin."""
     drawn = link_shapes((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
-    return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
+    return [*drawn, *map(Circle, [on.PINS] * 3, ((0.0, 0.0), pin, slider), look.pins)]
 
 
 def fixed_shapes(linkage: Linkage, look: LinkageSizes, *, bearing_below: bool) -> list[Shape]:
@@ -158,7 +185,7 @@ def fixed_shapes(linkage: Linkage, look: LinkageSizes, *, bearing_below: bool) -
     ):
         pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
         ghosts += link_shapes((layer,) * 3, pin, end, look)
-        ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
+        ghosts += [Circle(layer, pin, 0.6 * look.pins[1]), Circle(layer, end, 0.6 * look.pins[2])]
     walls = [line for barrel in look.barrels for line in _barrel_shapes(barrel, look.offset)]
     return [
         *centre_lines(look),
@@ -230,7 +257,7 @@ def guide_rails(look: LinkageSizes) -> list[Shape]:
 
 def crank_bearing(look: LinkageSizes, *, is_below: bool) -> list[Shape]:
     """Return the bearing of the crank pivot. is_below: whether the bearing stands below the pivot."""
-    return pivot_bearing((0.0, 0.0), 1.5 * max(look.pin, 0.3 * look.crank_width), is_below=is_below)
+    return pivot_bearing((0.0, 0.0), 1.5 * max(look.pins[0], 0.3 * look.crank_width), is_below=is_below)
 
 
 def pivot_bearing(pivot: Point, foot: float, *, is_below: bool) -> list[Shape]:

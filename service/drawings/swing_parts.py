@@ -133,7 +133,7 @@ def fixed_swing_shapes(drawn: SwingSizes) -> list[Shape]:
     for layer, angle in ((on.START, swing.start), (on.END, swing.end)):
         pin, slider = pin_positions(drawn.linkage, angle)
         ghosts += link_shapes((layer,) * 3, pin, slider, look)
-        ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, slider)]
+        ghosts += [Circle(layer, pin, 0.6 * look.pins[1]), Circle(layer, slider, 0.6 * look.pins[2])]
         if drawn.cylinder is not None:
             ghosts.append(_piston_rod(layer, slider, drawn.cylinder, look))
     barrel = [] if drawn.cylinder is None else _barrel(drawn.cylinder, look)

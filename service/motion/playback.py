@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,10 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
 from ...objectives.kinds import System
+from ...objectives.tables.curve_extremes import curve_extremes
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves
 from ..designs.design_curves import CurveColumn, cycle_table, lever_design_curves
+from ..designs.length_with_tolerance import tolerances_of
 from ..drawings import layers as on
 from ..drawings.lever_parts import fixed_lever_shapes, lever_extent, lever_parts
 from ..drawings.linkage_shapes import LinkageSizes, bar, fixed_shapes, lengths_in_words, linkage_sizes, slider_block
@@ -57,6 +59,7 @@ class Playback:
     rod. columns: curves at the same points. marks: positions of marker lines in them, deg. turns: crank revolutions
     until the motion repeats; 1 for a swing. still, moving: fixed and moving shapes of the drawing, the moving ones by
     name, each in its own coordinates. extent: left, bottom, right, top, mm. size: reference length for line types.
+    ends: exact minimum and maximum of curves, by key; others have those of their points.
     """
 
     summary: str
@@ -69,6 +72,7 @@ class Playback:
     size: float
     words: PlayerText
     turns: int = 1
+    ends: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 EXACT_PARTS = "Pivots are exact; {}, and so are the widths of links that the job does not describe by a section."
@@ -107,12 +111,13 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
     curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
     look = linkage_sizes(mechanism, linkage)
     angles = np.arange(turns * ANGLES, dtype=np.float64) * (2.0 * math.pi / ANGLES)
-    turn = linkage.at(angles)
+    turn, extremes = linkage.at(angles), curve_extremes(mechanism, linkage)
     dead = [math.degrees(float(angle)) % 360.0 for angle in linkage.dead_centre_angles]
     rpm = mechanism.speed * 30.0 / math.pi
+    factors = ((f"{curve.name}{curve.kind.metric.suffix}", curve.kind.metric.factor, curve) for curve in extremes)
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
     return Playback(
-        summary=f"{lengths_in_words(linkage, system, digits=6, stroke=True)}; {turning}",
+        summary=f"{lengths_in_words(linkage, tolerances_of(mechanism, linkage), system, stroke=True)}; {turning}",
         record={
             **position_record(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,
@@ -127,6 +132,11 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
         moving=moving_link_shapes(look),
         extent=look.extent,
         size=look.size,
+        ends={
+            key: (factor * curve.least.value, factor * curve.greatest.value)
+            for key, factor, curve in factors
+            if math.isfinite(curve.least.value + curve.greatest.value)
+        },
         words=replace(
             _TURNS,
             span_name=_TURNS.span_name if turns == 1 else f"{turns} turns of the crank",
@@ -171,7 +181,10 @@ def moving_link_shapes(look: LinkageSizes) -> dict[str, list[Shape]]:
         "slider": [slider_block(on.SLIDER, pin, look)],
         "rod": [bar(on.ROD, pin, (look.rod, 0.0), look.rod_width)],
         "crank": [bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
-        **{name: [Circle(on.PINS, pin, look.pin)] for name in ("pivot", "crank-pin", "slider-pin")},
+        **{
+            name: [Circle(on.PINS, pin, radius)]
+            for name, radius in zip(("pivot", "crank-pin", "slider-pin"), look.pins, strict=True)
+        },
     }
 
 
@@ -203,8 +216,8 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
     start, end = (math.degrees(angle) for angle in (drawn.swing.start, drawn.swing.end))
     how = "slowly" if timed is None else f"{drawn.swing.law} law, {timed:g} s per stroke"
     return Playback(
-        summary=f"{lengths_in_words(drawn.linkage, system, digits=6)}; from {start:.6g} to {end:.6g} deg, "
-        f"the {drawn.swing.driver} driven, {how}",
+        summary=f"{lengths_in_words(drawn.linkage, tolerances_of(mechanism, drawn.linkage), system)}; "
+        f"from {start:.6g} to {end:.6g} deg, the {drawn.swing.driver} driven, {how}",
         record={
             **position_record(drawn.look, at.slider_position, at.rod_angle),
             "angles": [round(math.degrees(angle), 9) for angle in angles],
@@ -233,7 +246,7 @@ def lever_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
     base = 1e3 * sizes.frame * math.cos(sizes.frame_angle), 1e3 * sizes.frame * math.sin(sizes.frame_angle)
     start, end = (math.degrees(angle) for angle in (placed.start, placed.end))
     turns = placed.of_full_turn
-    lengths, *_ = lengths_in_words(linkage, system, digits=6).split("; ")
+    lengths, *_ = lengths_in_words(linkage, {}, system).split("; ")
     motion = "rotates fully" if turns else f"swings from {start:.6g} to {end:.6g} deg"
     return Playback(
         summary=f"{lengths}; the crank {motion}",

@@ -44,7 +44,16 @@ def player_page(
         play = turn_playback(mechanism, linkage, system)
     else:
         play = (swing_playback if mechanism.lever is None else lever_playback)(mechanism, linkage, swing, system)
-    play = replace(play, columns=[_column_in_units(column, system) for column in play.columns])
+    factors = {column.key: metric_unit_in(column.unit, system)[1] for column in play.columns}
+    play = replace(
+        play,
+        columns=[_column_in_units(column, system) for column in play.columns],
+        ends={
+            key: (factor * play.ends[key][0], factor * play.ends[key][1])
+            for key, factor in factors.items()
+            if key in play.ends
+        },
+    )
     title = f"{name}, {design}" if design else name
     readout = (
         f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
@@ -107,6 +116,7 @@ def _curve_strip(column: CurveColumn, play: Playback) -> str:
     marks = (angle / play.turns for angle in play.marks)
     finite = [value for value in column.values if math.isfinite(value)]
     low, high = (min(finite), max(finite)) if finite else (0.0, 1.0)
+    least, greatest = play.ends.get(column.key, (low, high))
     span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
     lines = [f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in marks]
     if low < 0.0 < high:
@@ -123,7 +133,7 @@ def _curve_strip(column: CurveColumn, play: Playback) -> str:
             pen = "M"
     return (
         f"<figure><figcaption>{escape(column.title)}, {escape(unit_text(column.unit))} "
-        f"<small>{number(low)} to {number(high)}</small></figcaption>"
+        f"<small>{number(least)} to {number(greatest)}</small></figcaption>"
         f'<svg class="strip" viewBox="0 0 {_STRIP[0]:g} {_STRIP[1]:g}" preserveAspectRatio="none" aria-hidden="true">'
         f'{"".join(lines)}<path d="{"".join(path)}"/>'
         f'<line class="now" x1="0" x2="0" y1="0" y2="{_STRIP[1]:g}"/></svg></figure>'

@@ -47,12 +47,21 @@ class QuestionCommand:
 
 
 @dataclass(frozen=True)
+class Premise:
+    """What a question needs that not every machine has. words: without article or verb, "a motor"."""
+
+    words: str
+    is_met: Callable[[Problem, Mechanism], bool]
+
+
+@dataclass(frozen=True)
 class DesignQuestion:
     """Question declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
     The return type of `numbers` is the answer type, see `record_types`; its JSON Schema follows from it.
 
     package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
+    title: heading on the page; by default the name. premise: what it needs, if only some machines have it.
     shows: description for the help. needs_job: whether it needs masses, loads or tolerances. explained_columns: columns
     that it shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function
     `compute_shared_options` in the module derives further options for numbers and figure from the given ones. An
@@ -71,6 +80,8 @@ class DesignQuestion:
     explained_columns: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
     command: QuestionCommand | None = None
+    title: str = ""
+    premise: Premise | None = None
 
     @property
     def analysis_module(self) -> Any:

@@ -44,7 +44,7 @@ class FrontOrJobQuestion:
     kind of object that the question is about. help: description, with the first sentence as a separate paragraph. row:
     whether the question is about one design on the front. path: path of the endpoint, with names in braces. posted:
     whether the inputs are in the body of the request instead of its address. key: key of the numbers in the answer, ""
-    if they are the whole answer.
+    if they are the whole answer. title: heading on the page; by default the name.
     """
 
     package: str
@@ -56,6 +56,7 @@ class FrontOrJobQuestion:
     path: str = ""
     posted: bool = False
     key: str = ""
+    title: str = ""
 
     @property
     def name(self) -> str:

@@ -31,17 +31,10 @@ def title_with_unit(title: str, symbol: str, target: float | None = None) -> str
 
 
 def format_cell(cell: Cell) -> str:
-    """Return a value formatted for reading, with six significant digits."""
+    """Return a value formatted for reading, with five significant digits."""
     if cell is None:
         return "–"
-    return cell if isinstance(cell, str) else format_number(cell, 6)
-
-
-def format_cell_exactly(cell: Cell) -> str:
-    """Return a value as in CSV, with every digit; empty for undefined values and words."""
-    if cell is None or isinstance(cell, str) or math.isnan(cell):
-        return ""
-    return repr(cell)
+    return cell if isinstance(cell, str) else format_number(cell, 5)
 
 
 def format_length(millimetres: float, system: System, digits: int = 4) -> str:

@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import System, unit_text
 from ..designs.columns import find_column
 from ..designs.display_units import convert_row
 from ..render.numerals import format_cell
@@ -19,11 +19,11 @@ def decision_section(subject: Subject) -> Section | None:
     no_reason = "" if chosen.bookmark.reason else "; no reason was given"
     decisions = _decisions(subject)
     by = f" {decisions[-1][0]}." if decisions else ""
-    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision(chosen.faults)}{no_reason}.{by}")]
+    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision(chosen.remarks(subject.system))}{no_reason}.{by}")]
     if subject.bookmark != chosen.bookmark:
         blocks.append(Paragraph("This report is about another design.", "note"))
     ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
-    rows = [convert_row(alternative.row, subject.system) for alternative in ordered]
+    rows = [convert_row(alternative.varied.row, subject.system) for alternative in ordered]
     keys = [find_column(name, list(rows[0])).key for name in DIMENSIONS]
     columns = [find_column(key, list(rows[0])) for key in keys]
     objectives = subject.result.objectives
@@ -33,7 +33,7 @@ def decision_section(subject: Subject) -> Section | None:
         (
             alternative.bookmark.name,
             *(format_cell(row[column.key]) for column in numbers),
-            _reason_and_misses(alternative),
+            _reason_and_misses(alternative, subject.system),
         )
         for alternative, row in zip(ordered, rows, strict=True)
     )
@@ -70,7 +70,7 @@ def _decisions(subject: Subject) -> list[tuple[str, str, str]]:
     ]
 
 
-def _reason_and_misses(alternative: Alternative) -> str:
-    """Return the reason, the notes, and the requirements that a design misses."""
+def _reason_and_misses(alternative: Alternative, system: System) -> str:
+    """Return the reason, the notes, and the requirements that a design misses or from which it deviates."""
     notes = (f"note: {note}" for note in alternative.bookmark.notes)
-    return "; ".join(part for part in (alternative.bookmark.reason, *notes, *alternative.faults) if part)
+    return "; ".join(part for part in (alternative.bookmark.reason, *notes, *alternative.remarks(system)) if part)

@@ -114,6 +114,7 @@ def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
         )
     if changed.broken:
         sentences.append("misses requirements of the job; see below")
+    sentences += subject.deviations
     better, beaten = len(changed.dominated_by), len(changed.dominates)
     if better:
         sentences.append(f"{count_with_noun(better, 'design')} of the front at least as good in every objective")

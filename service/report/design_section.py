@@ -6,18 +6,17 @@ from typing import get_args
 
 from ...model.errors import InputError
 from ...model.swing.swing import CRANK_TURN
-from ...objectives.kinds import column_key_in_system, unit_text
+from ...objectives.kinds import column_key_in_system, metric_key, unit_text
 from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.display_units import row_without_noise
-from ..designs.judged_requirements import requirements_of
 from ..designs.length_with_tolerance import format_toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
 from ..figures.front_figures import datasheet_of
 from ..figures.shape_painting import drawing_figure
-from ..render.numerals import format_cell, format_cell_exactly
+from ..render.numerals import format_cell
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -58,7 +57,6 @@ def numbers_section(subject: Subject) -> Section:
             column.title,
             lengths.get(column.key, "0" if column.key in at_bound else format_cell(row[column.key])),
             unit_text(column.unit),
-            format_cell_exactly(subject.row[column.key]),
             column.key,
         )
         for column in columns
@@ -68,17 +66,17 @@ def numbers_section(subject: Subject) -> Section:
         "Every number of the design",
         (
             Paragraph(
-                "Objectives in bold. Dimensions have the digits of their tolerances. The fourth column is the number "
-                "with every digit, the fifth its name.",
+                "Objectives in bold. Dimensions have the digits of their tolerances. The last column is the name "
+                "under which files give every digit.",
                 "note",
             ),
             *([Paragraph(f"Not defined for this machine: {', '.join(absent)}.", "note")] if absent else []),
             Table(
                 "",
-                ("quantity", "value", "unit", "every digit", "column"),
+                ("quantity", "value", "unit", "column"),
                 rows,
-                (0.28, 0.13, 0.07, 0.22, 0.30),
-                frozenset({1, 3}),
+                (0.38, 0.17, 0.09, 0.36),
+                frozenset({1}),
                 frozenset(place for place, column in enumerate(columns) if column.key in objectives),
                 small=True,
             ),
@@ -126,18 +124,23 @@ def _requirement_blocks(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
-    rows, all_met, bounds = [], True, _bounds_by_slack_column(subject)
+    rows, all_met, bounds, deviations = [], True, _bounds_by_slack_column(subject), subject.deviations
+    allowed = {
+        rule.slack for rule in subject.requirements if rule.allowed and rule.missed_by(subject.metric_row) == 0.0
+    }
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
         active = _is_active(subject, column)
         is_met = active or (isinstance(slack, float) and slack >= 0.0)
-        all_met = all_met and is_met
-        state = "met, active" if active and is_met else "met" if is_met else "not met"
+        is_allowed = metric_key(column.key) in allowed
+        all_met = all_met and (is_met or is_allowed)
+        state = "met, active" if active and is_met else "met" if is_met else "allowed" if is_allowed else "not met"
         title = column.title.removeprefix("slack of ")
         distance = "0" if active else format_cell(slack)
         bound = bounds.get(column.key, "")
         rows.append((title, bound, format_cell(value), distance, unit_text(column.unit), state))
-    verdict = "All requirements are met." if all_met else "Not all requirements are met: see below."
+    met = "; ".join(["All requirements are met", *deviations]) + "."
+    verdict = met if all_met else "Not all requirements are met: see below."
     return [
         Paragraph(verdict, "good" if all_met else "bad"),
         Table(
@@ -153,7 +156,7 @@ def _requirement_blocks(subject: Subject) -> list[Block]:
 def _bounds_by_slack_column(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
-    for item in requirements_of(subject.design.part):
+    for item in subject.requirements:
         key, factor = column_key_in_system(item.slack, subject.system)
         ends = [("at least", item.lower), ("at most", item.upper)]
         if item.lower == item.upper:

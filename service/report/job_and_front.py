@@ -10,7 +10,7 @@ from ..designs.columns import find_column
 from ..designs.judged_requirements import front_violations_in_words
 from ..figures.parallel_coordinates import parallel_coordinates
 from ..figures.scatter_matrix import scatter_matrix
-from ..render.numerals import format_cell, format_cell_with_unit
+from ..render.numerals import format_cell, format_cell_with_unit, format_number
 from ..text.job_in_words import freedom_in_words, problem_in_words
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
@@ -40,7 +40,7 @@ def search_section(subject: Subject, created: str) -> Section:
         "Method": settings.method,
         "Seed": f"{result.seed}: the same job and seed give the same front, bit for bit",
         "Evaluations": f"{result.evaluations}",
-        "Time of the search": f"{format_cell(result.seconds)} s",
+        "Time of the search": f"{format_number(result.seconds, 2)} s",
         "Designs": f"{len(result.designs)} on the front, none of which is better than another in all objectives",
         "Hypervolume": f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",
         "Outcome": f"{result.status}: {result.message}",
@@ -74,7 +74,7 @@ def _certificate_blocks(subject: Subject) -> tuple[Block, ...]:
             lines.append(f"{title}: {format_cell(float(value))}")
     lines += [
         f"{certificate['boxes']} boxes, {certificate['open_boxes']} open, "
-        f"{format_cell(float(certificate['seconds']))} s"
+        f"{format_number(float(certificate['seconds']), 2)} s"
     ]
     return (Facts({"Certificate": lines, **({"Notes": certificate["notes"]} if certificate["notes"] else {})}),)
 

@@ -53,17 +53,17 @@ def _tolerance_facts(record: Mapping[str, Any], system: System) -> dict[str, lis
         size, angle = record[f"{name}_mm"], record[f"{name}_angle_deg"]
         if size is None:
             return "undefined: a linkage within the tolerances does not rotate fully"
-        return f"{format_length(size, system, 6)} at {format_cell(angle)} deg"
+        return f"{format_length(size, system)} at {format_cell(angle)} deg"
 
     spread = record["monte_carlo"]["percentiles_greatest_mm"]
-    percents = [f"{percent} % within {format_length(value, system, 6)}" for percent, value in spread.items()]
+    percents = [f"{percent} % within {format_length(value, system)}" for percent, value in spread.items()]
     return {
         "Worst case, first order": [size_and_angle("worst_case")],
         "Worst case, exact": [size_and_angle("exact_worst_case")],
         "Root-sum-square": [size_and_angle("root_sum_square")],
         "Random machines": percents or ["none that rotates fully"],
         "Yield": [
-            f"{format_cell(one['yield_percent'])} % within {format_length(one['limit_mm'], system, 6)} ({one['limit']})"
+            f"{format_cell(one['yield_percent'])} % within {format_length(one['limit_mm'], system)} ({one['limit']})"
             for one in record["yields"]
         ],
     }
@@ -76,7 +76,7 @@ def _source_table(record: PositionError, system: System) -> Table:
             str(row["source"]),
             f"{format_cell(row['limit_deg'])} deg"
             if row["limit_mm"] is None
-            else format_length(row["limit_mm"], system, 6),
+            else format_length(row["limit_mm"], system),
             format_cell(row["contribution_mm"] * factor),
             f"{row['share_of_worst_case_percent']:.1f}",
             f"{row['share_of_variance_percent']:.1f}",

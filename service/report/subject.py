@@ -15,7 +15,14 @@ from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation, judged_variation
 from ..designs.design_selection_options import minimised_values
 from ..designs.display_units import convert_record, convert_result, convert_row
-from ..designs.judged_requirements import faults_in_words, violations_in_words, violations_of
+from ..designs.judged_requirements import (
+    Requirement,
+    deviations_in_words,
+    faults_in_words,
+    requirements_of,
+    violations_in_words,
+    violations_of,
+)
 from ..designs.length_with_tolerance import format_toleranced, tolerances_of
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..jobs.stores import has_store, open_store
@@ -28,20 +35,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Alternative:
-    """Bookmarked design, perhaps the chosen one. row: metric row.
-
-    broken: columns of requirements that it misses. outside: columns whose range it leaves.
-    """
+    """Bookmarked design, perhaps the chosen one. varied: its numbers and faults, metric."""
 
     bookmark: Bookmark
-    row: Row
-    broken: Sequence[str] = ()
-    outside: Sequence[str] = ()
+    varied: Variation
 
-    @property
-    def faults(self) -> list[str]:
-        """Missed requirements and exceeded ranges, in words."""
-        return faults_in_words(self.row, self.broken, self.outside)
+    def remarks(self, system: System) -> list[str]:
+        """Return missed requirements, exceeded ranges and allowed deviations, in words."""
+        row, design = self.varied.row, self.varied.design
+        return [
+            *faults_in_words(row, self.varied.broken, self.varied.outside),
+            *deviations_in_words(requirements_of(design.part, design.allowed), row, system),
+        ]
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,16 @@ class Subject:
         return self.changed.design if self.changed else stored_design(self.problem, self.metric, self.number)
 
     @cached_property
+    def requirements(self) -> list[Requirement]:
+        """Requirements of the job on the design, with the deviations that are allowed for it."""
+        return requirements_of(self.design.part, self.design.allowed)
+
+    @cached_property
+    def deviations(self) -> list[str]:
+        """Deviations within what is allowed, in words."""
+        return deviations_in_words(self.requirements, self.metric_row, self.system)
+
+    @cached_property
     def tolerances(self) -> dict[str, float]:
         """Tolerance of each dimension that has one, by column and in its unit."""
         tolerances_mm = tolerances_of(self.design.mechanism, self.design.linkage)
@@ -90,7 +105,7 @@ class Subject:
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def format_cell(self, key: str, cell: Cell) -> str:
-        """Return a cell as readable text: a dimension with the decimals of its tolerance, others with six digits."""
+        """Return a cell as readable text: a dimension with the decimals of its tolerance, others with five digits."""
         if key not in self.tolerances or not isinstance(cell, float):
             return format_cell(cell)
         return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
@@ -102,11 +117,15 @@ class Subject:
             self.result.designs[self.number - 1] if self.changed is None else convert_row(self.changed.row, self.system)
         )
 
+    @property
+    def metric_row(self) -> Row:
+        """All numbers of the design in metric units."""
+        return self.metric.designs[self.number - 1] if self.changed is None else self.changed.row
+
     @cached_property
     def violation_sentences(self) -> list[str]:
         """Sentences on the allowable values that the design violates."""
-        row = self.metric.designs[self.number - 1] if self.changed is None else self.changed.row
-        violated = convert_record(violations_of(self.design.mechanism, row), self.system)
+        violated = convert_record(violations_of(self.design.mechanism, self.metric_row), self.system)
         return violations_in_words(violated, self.row)
 
     @cached_property
@@ -135,11 +154,9 @@ def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Res
     """Return the bookmarked designs of a job, each evaluated against its requirements and ranges."""
     minimised, alternatives = minimised_values(result), []
     for bookmark in bookmarks:
-        design = StoredDesign(problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
-        varied = judged_variation(design, result, minimised)
-        alternatives.append(
-            Alternative(bookmark=bookmark, row=varied.row, broken=varied.broken, outside=varied.outside)
-        )
+        part = problem.part(bookmark.variant)
+        design = StoredDesign(part, bookmark.dimensions, bookmark.variant, bookmark.allowed)
+        alternatives.append(Alternative(bookmark=bookmark, varied=judged_variation(design, result, minimised)))
     return alternatives
 
 

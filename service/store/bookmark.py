@@ -1,7 +1,7 @@
 """Bookmark of a design with its history: notes, reasons and decisions."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -33,7 +33,8 @@ class Bookmark:
 
     design: number of the front design that it is or is derived from; None for neither. variant: variant of the job's
     choices. dimensions: crank, rod, offset, m, and each extra variable, SI. decided: whether it was chosen, at most one
-    per job. reason: reason for or against it. history: its notes, reasons and decisions, oldest first.
+    per job. reason: reason for or against it. allowed: deviations from requirements that somebody allows for it, by
+    column. history: its notes, reasons and decisions, oldest first.
     """
 
     job: int
@@ -47,6 +48,7 @@ class Bookmark:
     variant: int
     dimensions: tuple[float, ...]
     at: float
+    allowed: Mapping[str, float]
     history: tuple[HistoryEntry, ...] = ()
 
     @property
@@ -61,6 +63,6 @@ class Bookmark:
         return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
 
     def decision(self, faults: Sequence[str]) -> str:
-        """Return the decision for this design in words, with its reason and faults; empty if there is none."""
+        """Return the decision for this design in words, with reason, faults and deviations; empty if there is none."""
         reason = f" ({self.reason})" if self.reason else ""
         return "; ".join((f"Decided: {self.name}{reason}", *faults)) * self.decided

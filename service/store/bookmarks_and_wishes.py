@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, TypedDict, Unpack
 
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
@@ -52,12 +53,13 @@ def bookmark_design(
     dimensions: tuple[float, ...],
     variant: int = 0,
     design: int | None = None,
+    allowed: Mapping[str, float] = MappingProxyType({}),
     **remarks: Unpack[Remarks],
 ) -> Bookmark:
     """Bookmark a design of a job and return it, without its history. Raises `NotFound`, `InputError` beyond the limit.
 
     A design has at most one bookmark: if it exists, it takes over the remarks that are not empty. A new bookmark
-    without a name is called "Kept 3" and so on.
+    without a name is called "Kept 3" and so on. allowed: allowed deviations from requirements, by column.
     """
     with store.writing() as connection:
         job_by_number(connection, job, lock=True)
@@ -72,7 +74,8 @@ def bookmark_design(
             fixed = {"design": design, "variant": variant, "dimensions": json.dumps(dimensions), "at": now()}
             empty = {"name": f"Kept {number}", "note": "", "star": False, "decided": False, "reason": ""}
             connection.execute(insert(bookmarks).values(job=job, number=number, **fixed, **empty))
-        return _change_bookmark(connection, job, number, {name: value for name, value in remarks.items() if value})
+        given = {**remarks, "allowed": json.dumps({**allowed}) if allowed else ""}
+        return _change_bookmark(connection, job, number, {name: value for name, value in given.items() if value})
 
 
 def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
@@ -120,7 +123,8 @@ def _bookmark_by_number(connection: Connection, job: int, number: int) -> Bookma
 
 
 def _bookmark_from(row: Any) -> Bookmark:
-    return Bookmark(**{**row._mapping, "dimensions": tuple(json.loads(row.dimensions))})
+    dimensions, allowed = tuple(json.loads(row.dimensions)), json.loads(row.allowed)
+    return Bookmark(**{**row._mapping, "dimensions": dimensions, "allowed": allowed})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -127,6 +127,7 @@ bookmarks = sa.Table(
     sa.Column("variant", sa.Integer, nullable=False),
     sa.Column("dimensions", sa.Text, nullable=False),
     sa.Column("at", sa.Double, nullable=False),
+    sa.Column("allowed", sa.Text, nullable=False, server_default="{}"),
 )
 
 history = sa.Table(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from alembic.config import Config
     from alembic.script import ScriptDirectory
 
-LATEST = "0008"
+LATEST = "0009"
 """Table version of this software, so that an up-to-date store opens without Alembic."""
 LOCK = 0x51C7  # PostgreSQL advisory lock for changing the tables
 

@@ -84,6 +84,7 @@ declare global {
     interface Rounded {
       met: boolean;
       message: string;
+      allowed: Record<string, number>;
       designs: RoundedRow[];
       notes: string[];
     }

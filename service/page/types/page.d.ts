@@ -74,6 +74,8 @@ declare namespace Page {
     row: Api.Row;
     /** Sentences on the allowable values that it violates. */
     violations: string[];
+    /** Deviations from requirements that are allowed for it, by column. */
+    allowed?: Record<string, number>;
     curves: Api.Curves;
     curveColumns: Api.Column[];
     /** Places in the cycle of the inner and the outer dead centre, or of both ends of a swing. */
@@ -99,6 +101,7 @@ declare namespace Page {
   /** What a changed design has: its lengths, and of other numbers that were changed column, = and value. */
   interface Numbers extends Lengths {
     value?: string[];
+    allow?: string[];
   }
   /** The place in the cycle that the parts of a view share, as it changes: of a turn the crank angle. */
   interface Turn {

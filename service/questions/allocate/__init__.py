@@ -2,7 +2,7 @@
 
 from ....objectives.kinds import LENGTH
 from ....optimise.sizing.input_words import Kind
-from ..design_question import DesignQuestion, QuestionCommand
+from ..design_question import DesignQuestion, Premise, QuestionCommand
 from ..inputs import Input
 
 QUESTION = DesignQuestion(
@@ -38,4 +38,6 @@ QUESTION = DesignQuestion(
         sizes=True,
         figure=("allocation", "error and costs"),
     ),
+    title="Cheapest tolerances",
+    premise=Premise("costs of tolerances", lambda problem, _: problem.costs is not None),
 )

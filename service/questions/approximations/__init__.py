@@ -2,4 +2,9 @@
 
 from ..design_question import DesignQuestion
 
-QUESTION = DesignQuestion(__name__, 70, "errors of lumped-mass and series approximations")
+QUESTION = DesignQuestion(
+    __name__,
+    70,
+    "errors of lumped-mass and series approximations",
+    title="Textbook formulas",
+)

@@ -12,4 +12,5 @@ QUESTION = DesignQuestion(
         "peak_shaking_moment_Nm",
         "rms_shaking_moment_Nm",
     ),
+    title="Shaking forces",
 )

@@ -31,4 +31,5 @@ QUESTION = FrontOrJobQuestion(
             limits={"gt": 0.0, "le": 20.0},
         ),
     ),
+    title="Proof of the front",
 )

@@ -66,4 +66,5 @@ QUESTION = DesignQuestion(
         called="balance",
         figure=("balance", "the hodograph before and after"),
     ),
+    title="Counterweight",
 )

@@ -13,4 +13,10 @@ FLUCTUATION = Input(
     sign="positive",
     upper_limit=1.0,
 )
-QUESTION = DesignQuestion(__name__, 100, "flywheel that limits the speed --fluctuation", inputs=(FLUCTUATION,))
+QUESTION = DesignQuestion(
+    __name__,
+    100,
+    "flywheel that limits the speed --fluctuation",
+    inputs=(FLUCTUATION,),
+    title="Flywheel size",
+)

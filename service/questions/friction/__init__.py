@@ -2,4 +2,10 @@
 
 from ..design_question import DesignQuestion
 
-QUESTION = DesignQuestion(__name__, 20, "efficiency, self-locking", explained_columns=("self_locking_margin_deg",))
+QUESTION = DesignQuestion(
+    __name__,
+    20,
+    "efficiency, self-locking",
+    explained_columns=("self_locking_margin_deg",),
+    title="Friction",
+)

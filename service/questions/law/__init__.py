@@ -2,7 +2,7 @@
 
 from ....objectives.kinds import ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED, TIME, TORQUE
 from ....optimise.motion_law.input_words import RANGE, LawObjective, Timing
-from ..design_question import DesignQuestion, QuestionCommand
+from ..design_question import DesignQuestion, Premise, QuestionCommand
 from ..inputs import Input
 
 QUESTION = DesignQuestion(
@@ -98,4 +98,6 @@ QUESTION = DesignQuestion(
         sizes=True,
         figure=("law", "speed, torque and slider speed against constant speed"),
     ),
+    title="Servo motion",
+    premise=Premise("joints and guide without friction", lambda _, machine: not machine.friction.acts),
 )

@@ -3,7 +3,7 @@
 from ....model.machine.mounting import Mounting
 from ....model.swing.swing_types import LeverLaw
 from ....objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, MASS, PRESSURE, TIME
-from ..design_question import DesignQuestion, QuestionCommand
+from ..design_question import DesignQuestion, Premise, QuestionCommand
 from ..inputs import Input
 
 QUESTION = DesignQuestion(
@@ -141,5 +141,8 @@ QUESTION = DesignQuestion(
         alone="Without JOB, the lever has only the carried mass.",
         curves="the curves from start to end",
         figure=("lever", "the lever at both ends, force and length"),
+    ),
+    premise=Premise(
+        "a lever moved by a cylinder", lambda problem, _: problem.motion is not None and problem.motion.of_lever
     ),
 )

@@ -29,4 +29,5 @@ QUESTION = FrontOrJobQuestion(
             sent=["rod <= 300 mm"],
         ),
     ),
+    title="Nearest with conditions",
 )

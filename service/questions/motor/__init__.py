@@ -7,4 +7,5 @@ QUESTION = DesignQuestion(
     30,
     "power, RMS torque over time, reflected inertia",
     explained_columns=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
+    title="Motor",
 )

@@ -1,7 +1,7 @@
 """Capability of a press before a dead centre: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, TORQUE
-from ..design_question import DesignQuestion
+from ..design_question import DesignQuestion, Premise
 from ..inputs import Input
 
 TOUCH = Input(
@@ -32,4 +32,6 @@ QUESTION = DesignQuestion(
     "force, speed and work of a press before a dead centre; dwell",
     needs_job=False,  # if touch distance and rated torque are given
     inputs=(TOUCH, DWELL, RATED),
+    title="Press force",
+    premise=Premise("a touch distance of the slider", lambda _, machine: machine.slider.touch is not None),
 )

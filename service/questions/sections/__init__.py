@@ -1,6 +1,6 @@
 """Minimum-mass sections of the crank and the rod: numbers and text."""
 
-from ..design_question import DesignQuestion, QuestionCommand
+from ..design_question import DesignQuestion, Premise, QuestionCommand
 
 QUESTION = DesignQuestion(
     __name__,
@@ -15,5 +15,12 @@ QUESTION = DesignQuestion(
         endpoint="size_sections",
         job="Job file with a table [sections].",
         sizes=True,
+    ),
+    title="Lightest bars",
+    premise=Premise(
+        "limits for bars, and no friction",
+        lambda problem, machine: (
+            problem.sections is not None and machine.strength is not None and not machine.friction.acts
+        ),
     ),
 )

@@ -2,4 +2,9 @@
 
 from ..design_question import DesignQuestion
 
-QUESTION = DesignQuestion(__name__, 10, "static forces from the loads only; mechanical advantage")
+QUESTION = DesignQuestion(
+    __name__,
+    10,
+    "static forces from the loads only; mechanical advantage",
+    title="Forces without masses",
+)

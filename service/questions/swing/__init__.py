@@ -2,7 +2,7 @@
 
 from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.kinds import ANGLE, LENGTH, TIME
-from ..design_question import DesignQuestion, QuestionCommand
+from ..design_question import DesignQuestion, Premise, QuestionCommand
 from ..inputs import Input
 
 QUESTION = DesignQuestion(
@@ -52,4 +52,5 @@ QUESTION = DesignQuestion(
         alone="Without JOB, all bodies are massless.",
         curves="the curves of both strokes",
     ),
+    premise=Premise("a crank that swings", lambda problem, _: problem.motion is not None),
 )

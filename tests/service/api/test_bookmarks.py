@@ -85,6 +85,33 @@ def test_a_decision_names_the_requirements_that_the_design_misses(client: httpx.
     assert undecided["decision"] == ""
 
 
+def test_an_allowed_deviation_stays_with_the_kept_design(client: httpx.Client, solved: Solved) -> None:
+    path, dimensions = f"{solved.path}/designs/3", {"rod_mm": 640.0}
+    lengths = {key: solved.result.designs[2][key] for key in LENGTHS} | dimensions
+    missed = client.post(f"{path}/what-if", json={**lengths, "angles": 0}).json()
+    amount = abs(missed["design"]["slack_stroke_mm"])
+    assert (missed["broken"], missed["deviations"]) == (["stroke_mm"], [])
+    allow = {"stroke_mm": round(amount * 1.01, 6)}
+    allowed = client.post(f"{path}/what-if", json={**lengths, "angles": 0, "allow": allow}).json()
+    assert (allowed["broken"], allowed["faults"], allowed["allowed"]) == ([], ["outside the job: rod"], allow)
+    assert f"within the allowed ±{allow['stroke_mm']:.6g} mm" in allowed["deviations"][0]
+    too_little = client.post(f"{path}/what-if", json={**lengths, "angles": 0, "allow": {"stroke_mm": 0.99 * amount}})
+    assert too_little.json()["broken"] == ["stroke_mm"]
+    one = bookmarked(client, solved, design=3, dimensions=dimensions, name="A", decided=True, allow=allow)
+    assert (one["broken"], one["decision"]) == ([], "Decided: A; outside the job: rod")
+    assert (one["deviations"], one["numbers"]["allow"]) == (
+        allowed["deviations"],
+        [f"stroke_mm={allow['stroke_mm']}"],
+    )
+    known = client.post(f"{path}/what-if", json={**lengths, "angles": 0}).json()
+    assert known["deviations"] == allowed["deviations"]  # those of its bookmark
+    report = client.get(f"{path}/report.html", params=one["numbers"]).text
+    assert "All requirements are met; " in report
+    assert "misses requirements" not in report
+    wrong = client.post(f"{path}/what-if", json={**lengths, "allow": {"peak_torque_Nm": 1.0}})
+    assert "only requirements of this job allow deviations" in wrong.json()["detail"]
+
+
 def test_the_name_of_a_kept_design_is_in_its_files_its_answers_and_the_list(
     client: httpx.Client, solved: Solved
 ) -> None:

@@ -39,9 +39,18 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     panel = page.get_by_role("tabpanel")
     panel.scroll_into_view_if_needed(timeout=30_000)
     listed = httpx.get(f"{address}{API}/topics", timeout=60.0).json()
-    asked = [*listed["topics"], *listed["questions"], *listed["fronts"]]
-    tabs = page.get_by_role("tab")
-    expect(tabs).to_have_text([*(one["title"] for one in asked if one["name"] not in OWN)])
+    questions = [one for one in (*listed["topics"], *listed["questions"]) if one["name"] not in OWN]
+    path = f"{address}{API}/jobs/{solved.number}/designs/2/requirements"
+    lacking = httpx.get(path, timeout=60.0).json()["lacking"]
+    fitting = sorted((one for one in questions if one["name"] not in lacking), key=lambda one: not one["premise"])
+    fronts = [one["title"] for one in listed["fronts"] if one["name"] not in OWN]
+    expect(page.get_by_role("tablist", name="Analyses", exact=True).get_by_role("tab")).to_have_text(
+        [*(one["title"] for one in fitting), *fronts]
+    )
+    absent = [f"{one['title']} needs {one['premise']}" for one in questions if one["name"] in lacking]
+    assert "Start from rest needs a motor" in absent
+    page.get_by_text(f"{len(absent)} for other machines").click()
+    expect(page.get_by_role("tablist", name="Analyses for other machines").get_by_role("tab")).to_have_text(absent)
     page.get_by_role("tab", name="Motor", exact=True).click()
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics"
     told = httpx.get(f"{path}/motor", timeout=60.0).json()["told"]
@@ -55,8 +64,8 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     page.get_by_role("tab", name="Motor", exact=True).press("ArrowRight")
     following = page.get_by_role("tab", selected=True)
     expect(following).to_be_focused()
-    expect(following).to_have_text("Balance")
-    page.get_by_role("tab", name="Start up").click()
+    expect(following).to_have_text("Shaking forces")
+    page.get_by_role("tab", name="Start from rest").click()
     expect(panel).to_contain_text("give it under “Motor and flywheel”. Change the job")
     expect(panel.locator("img")).to_have_count(0)
 
@@ -142,7 +151,7 @@ def test_heads_in_inches_have_their_units_after_commas(opened: tuple[Page, str],
     heads = panel.get_by_role("columnheader")
     forces = ["load, lbf", "rod force, lbf", "guide, lbf", "crank torque, lbf in"]
     expect(heads).to_have_text(["crank angle, deg", *forces, "mechanical advantage"], timeout=30_000)
-    page.get_by_role("tab", name="Approximations").click()
+    page.get_by_role("tab", name="Textbook formulas").click()
     parts = [f"{percent} %" for percent in (0, 25, 50, 75, 100)]
     expect(heads).to_have_text(["model", "peak", "unit", "error", *parts], timeout=30_000)
     page.evaluate("localStorage.clear()")

@@ -195,6 +195,7 @@ def test_a_command_has_a_form_and_its_answer_on_the_page(
 def tab_of(page: Page, address: str, system: str) -> Locator:
     """Open the swing of a design that turns."""
     open_question(page, address, "motor", system)
+    page.get_by_text("for other machines").click()
     page.get_by_role("tab", name="Swing").press("Enter")
     return page.locator("section.analyses")
 

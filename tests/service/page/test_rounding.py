@@ -52,6 +52,8 @@ def test_round_numbers_are_those_of_the_api_with_every_miss_as_a_number(
     page: Page, opened: tuple[Page, str], solved: Solved
 ) -> None:
     page.get_by_label("Rod, step").fill("1")
+    expect(page.get_by_label("Stroke, allowed deviation")).to_have_value("0.05")
+    page.get_by_label("Stroke, allowed deviation").fill("")
     page.get_by_label("Rod, step").press("Enter")
     lines = page.get_by_role("table", name="Round numbers").locator("tbody tr")
     steps = ["crank=0.5 mm", "rod=1 mm", "offset=0.5 mm"]
@@ -87,11 +89,16 @@ def test_applying_one_keeps_the_list_and_the_steps(page: Page, opened: tuple[Pag
         page.get_by_role("button", name=f"Apply round numbers {number}", exact=True).click()
         for key in LENGTHS:
             expect(page.locator(f"#what-if-{key}")).to_have_value(f"{expected[number - 1][key]:.6g}", timeout=30_000)
-        expect(page.locator(".what-if .verdict")).to_contain_text("Misses a requirement: stroke")
+        expect(page.locator(".what-if .verdict")).to_contain_text("mm, within the allowed ±0.2 mm.")
+        expect(page.locator(".objectives")).not_to_contain_text("misses")
         expect(lines).to_have_count(len(expected))
         expect(page.get_by_label("Rod, step")).to_have_value("2")
         expect(page.get_by_label("Stroke, allowed deviation")).to_have_value("0.2")
-        expect(page).to_have_url(re.compile(f"rod_mm={expected[number - 1]['rod_mm']:g}"))
+        expect(page).to_have_url(re.compile(f"rod_mm={expected[number - 1]['rod_mm']:g}.*allow=stroke_mm%3D0.2"))
+    page.get_by_role("button", name="Decide for this design").press("Enter")
+    expect(page.get_by_role("dialog")).to_contain_text("within the allowed ±0.2 mm.")
+    expect(page.get_by_role("dialog").get_by_role("button", name="Decide", exact=True)).to_be_visible()
+    page.get_by_role("dialog").press("Escape")
 
 
 def test_the_search_shows_its_progress_and_can_be_stopped(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -171,7 +171,7 @@ def test_certify_has_a_tab_that_proves_what_the_command_line_does(
     page.goto(f"{address}/#/help")
     page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
     page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
-    page.get_by_role("tab", name="Certify").press("Enter", timeout=30_000)
+    page.get_by_role("tab", name="Proof of the front").press("Enter", timeout=30_000)
     panel = page.get_by_role("tabpanel")
     share = panel.get_by_label("Largest gap, as a fraction of each objective's range")
     share.fill("0.2")
@@ -190,7 +190,7 @@ def test_like_has_a_tab_that_finds_what_the_api_does(opened: tuple[Page, str, st
     page.goto(f"{address}/#/help")
     page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
     page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
-    tab = page.get_by_role("tab", name="Like")
+    tab = page.get_by_role("tab", name="Nearest with conditions")
     tab.press("Enter", timeout=30_000)
     panel = page.get_by_role("tabpanel")
     expect(tab).to_be_focused()  # also where the panel has been drawn meanwhile

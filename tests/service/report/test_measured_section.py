@@ -13,7 +13,7 @@ from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.design_curves import cycle_csv
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves
 from slidercrank.service.questions.measured.analysis import numbers
-from slidercrank.service.render.numerals import format_cell
+from slidercrank.service.render.numerals import format_number
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph, Picture, Section, Table
 from slidercrank.service.report.html import html_file
@@ -52,11 +52,13 @@ def test_every_number_is_in_its_tables(subject: Subject, system: str) -> None:
     assert isinstance(picture, Picture)
     (entry,) = numbers(subject.design.mechanism, subject.design.linkage, measured=measured)["curves"].values()
     factor, unit = (1.0, "N m") if system == "metric" else (8.850745791327183, "lbf in")
-    values = [format_cell(factor * entry[f"{name}_Nm"]) for name in ("rms", "mean", "largest")]
-    assert deviation.rows == (("drive torque", "40", *values, format_cell(entry["largest_at_crank_angle_deg"]), unit),)
-    assert shift.rows[0][1] == format_cell(entry["best_crank_angle_shift_deg"])
+    values = [format_number(factor * entry[f"{name}_Nm"], 6) for name in ("rms", "mean", "largest")]
+    assert deviation.rows == (
+        ("drive torque", "40", *values, format_number(entry["largest_at_crank_angle_deg"], 6), unit),
+    )
+    assert shift.rows[0][1] == format_number(entry["best_crank_angle_shift_deg"], 6)
     assert entry["best_crank_angle_shift_deg"] == pytest.approx(np.degrees(-0.1), abs=1e-5)
-    assert shift.rows[0][2] == format_cell(factor * entry["best_shift_Nm"])
+    assert shift.rows[0][2] == format_number(factor * entry["best_shift_Nm"], 6)
     assert note.text == "Columns that are empty or not a curve, omitted: room."
     (panel,) = picture.draw().axes
     assert panel.get_title(loc="left") == f"drive torque, {unit}"

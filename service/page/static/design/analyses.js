@@ -22,17 +22,20 @@ const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a separate vie
 
 /**
  * Put the analyses into two places. questions, fronts: the service's questions about a design, and about a front. swings: whether the
- * crank swings; isLever: whether a cylinder moves it; tolerances: whether the job has any. tab: the selected tab; chooseTab(tab): called
+ * crank swings; isLever: whether a cylinder moves it; lacking: names of questions that the
+ * machine does not meet; tolerances: whether the job has any. tab: the selected tab; chooseTab(tab): called
  * for another one, "" for the first. Returns show(lengths): lengths of a changed design, or null for the unchanged one.
  * @param {{ sections: HTMLElement, tabs: HTMLElement }} places
- * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, isLever: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
+ * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, isLever: boolean, lacking: string[], tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
  */
 export function analyses(
   places,
-  { job, number, questions, fronts, swings, isLever, tolerances, tab, chooseTab, signal },
+  { job, number, questions, fronts, swings, isLever, lacking, tolerances, tab, chooseTab, signal },
 ) {
   const titles = isLever ? TITLES_OF_LEVER : swings ? TITLES_OF_SWING : TITLES;
-  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown });
+  /** @param {string} name @param {HTMLElement[]} buttons */
+  const tabList = (name, buttons) =>
+    h("div", { class: "tabs", role: "tablist", "aria-label": name, onkeydown }, buttons);
   const panel = h("div", {
     class: "panel analysis",
     role: "tabpanel",
@@ -48,7 +51,12 @@ export function analyses(
   const ofFront = fronts
     .filter(isListed)
     .map((of) => withView(of, of.path.replace("{number}", job).replace("{design}", `${number}`)));
-  const listed = [...questions.filter(isListed).map(ofDesign), ...ofFront];
+  const [absent, fitting] = [true, false].map((lacks) =>
+    questions.filter((one) => isListed(one) && lacking.includes(one.name) === lacks),
+  );
+  fitting.sort((one, other) => Number(!one.premise) - Number(!other.premise)); // of this machine first
+  const listed = [...fitting.map(ofDesign), ...ofFront, ...absent.map(ofDesign)];
+  const fit = listed.length - absent.length; // number of those that suit the machine
   let chosen = Math.max(
     listed.findIndex(({ name }) => name === tab),
     0,
@@ -71,7 +79,15 @@ export function analyses(
         onclick: () => choose(n),
       },
       one.title,
+      n >= fit && h("span", { class: "quiet" }, ` needs ${one.premise}`),
     ),
+  );
+
+  const others = h(
+    "details",
+    { hidden: !absent.length },
+    h("summary", {}, `${absent.length} for other machines`),
+    tabList("Analyses for other machines", buttons.slice(fit)),
   );
 
   /** Mark the selected tab. The buttons are not redrawn, so they keep the focus. */
@@ -81,11 +97,12 @@ export function analyses(
       button.tabIndex = n === chosen ? 0 : -1;
     });
     panel.setAttribute("aria-labelledby", buttons[chosen].id);
+    if (chosen >= fit) others.open = true;
   }
 
   async function draw() {
     const { shows, command, view } = listed[chosen];
-    const isOfDesign = chosen < listed.length - ofFront.length;
+    const isOfDesign = !ofFront.includes(listed[chosen]);
     near = true;
     markChosen();
     fill(
@@ -135,8 +152,13 @@ export function analyses(
     }),
   );
   if (!swings) {
-    fill(tabs, buttons);
-    fill(places.tabs, h("h2", {}, "Analyses"), tabs, panel);
+    fill(
+      places.tabs,
+      h("h2", {}, "Analyses"),
+      tabList("Analyses", buttons.slice(0, fit)),
+      others,
+      panel,
+    );
     markChosen();
     whenNear(panel, async () => near || (await draw()), signal);
   }

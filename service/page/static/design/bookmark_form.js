@@ -6,7 +6,7 @@ import { get, patch, post } from "../lib/api.js";
 import { askFirst } from "../lib/dialog.js";
 import { fill, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
-import { withUnit } from "../lib/numbers.js";
+import { inDisplayUnits, withUnit } from "../lib/numbers.js";
 import { capitalised } from "../lib/words.js";
 
 /** @typedef {Pick<Api.Bookmarks, "designs" | "history">} List */
@@ -76,17 +76,18 @@ export function notesOn({ history }, number) {
  * @param {string | number} job @param {Api.Kept} one
  */
 export function hrefOf(job, { design, numbers }) {
-  const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
-  const query = /** @type {Record<string, number>} */ ({ ...numbers });
-  return design && numbers ? link(["jobs", job, "designs", design], { ...query, value }) : null;
+  const query = Object.entries(numbers ?? {}).map(([key, value]) => [key, String(value)]);
+  return design && numbers
+    ? link(["jobs", job, "designs", design], Object.fromEntries(query))
+    : null;
 }
 
 /**
  * Ask for name and reason of a decision, or for name and note. known: bookmark of the design. title: its name without a bookmark. faults:
- * requirements that it misses. send(body): sends the remarks to the service.
- * @param {{ deciding: boolean, list: List, known: Api.Kept | undefined, title: string, faults: string[], send: (body: object) => unknown }} options
+ * requirements that it misses; deviations: those that it misses by no more than is allowed. send(body): sends the remarks to the service.
+ * @param {{ deciding: boolean, list: List, known: Api.Kept | undefined, title: string, faults: string[], deviations: string[], send: (body: object) => unknown }} options
  */
-export function askRemarks({ deciding, list, known, title, faults, send }) {
+export function askRemarks({ deciding, list, known, title, faults, deviations, send }) {
   const { decided } = decisionOf(list);
   const other = decided !== known ? decided : null;
   const name = known?.name ?? title;
@@ -110,6 +111,7 @@ export function askRemarks({ deciding, list, known, title, faults, send }) {
       deciding &&
         faults.length > 0 &&
         h("p", { class: "bad" }, `${capitalised(faults.join("; "))}.`),
+      deviations.map((words) => h("p", {}, `${inDisplayUnits(capitalised(words))}.`)),
       field("name", "Name of the design", { value: name, maxlength: 200 }),
       field(deciding ? "reason" : "note", deciding ? "Reason" : "Note", {
         value: (deciding && known?.reason) || "",
@@ -142,16 +144,17 @@ export function withdraw(job, { name, number }, done) {
 
 /**
  * Return {node, show(shown)}: buttons and status of a design. design: its original on the front. list: the bookmarks, requested if omitted.
- * dimensions(): its dimensions, or null if unchanged. lengths(): the centre of a search nearby. kept(bookmark): called for a new bookmark.
+ * dimensions(): its dimensions, or null if unchanged. allow(): deviations allowed for it. lengths(): the centre of a search nearby. kept(bookmark): called for a new bookmark.
  * shown: number of its bookmark or null, its name without a bookmark, and its missed requirements.
- * @param {{ job: string, design: number, list?: List, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
+ * @param {{ job: string, design: number, list?: List, dimensions: () => Record<string, Api.Row[string]> | null, allow?: () => Api.WhatIf["allowed"] | undefined, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
  */
-export function bookmarkForm({ job, design, list, dimensions, kept, lengths }) {
+export function bookmarkForm({ job, design, list, dimensions, allow, kept, lengths }) {
   const standing = h("div", { class: "standing", role: "status" });
   let shown = {
     number: /** @type {number | null} */ (null),
     title: "",
     faults: /** @type {string[]} */ ([]),
+    deviations: /** @type {string[]} */ ([]),
   };
   const known = () => list?.designs.find(({ number }) => number === shown.number);
   const load = async () => {
@@ -164,6 +167,7 @@ export function bookmarkForm({ job, design, list, dimensions, kept, lengths }) {
     const bookmark = await post(`jobs/${job}/kept`, {
       design,
       dimensions: dimensions() ?? {},
+      allow: allow?.() ?? {},
       ...body,
     });
     shown.number = bookmark.number;

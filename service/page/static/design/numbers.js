@@ -6,7 +6,7 @@ import { text, unitOf, withPower, withUnit } from "../lib/numbers.js";
 import { requirementText } from "./requirement_text.js";
 import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 
-/** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
+/** @typedef {{ name: string, series: number | string, row: Api.Row, allowed?: Api.WhatIf["allowed"] }} Shown A design of the tables. */
 
 const QUALITY = ["status", "residual"];
 const MET = 1e-8; // relative tolerance of bounds
@@ -201,9 +201,9 @@ function limits(designs, requirements, slow, names) {
         helpLink(column, names),
         h("span", { class: "quiet asked" }, ` ${requirementText(asked)}`),
       ),
-      designs.map(({ row, name }) => [
+      designs.map(({ row, name, allowed }) => [
         cell(row[asked.column], column, { name }),
-        h("td", {}, met(row, asked)),
+        h("td", {}, met(row, asked, allowed)),
       ]),
     );
   });
@@ -221,14 +221,21 @@ function limits(designs, requirements, slow, names) {
   );
 }
 
-/** @param {Api.Row} row @param {Api.Requirement} requirement */
-function met(row, { lower, upper, slack, unit }) {
+/** @param {Api.Row} row @param {Api.Requirement} requirement @param {Shown["allowed"]} allowed deviations by column */
+function met(row, { column, lower, upper, slack, unit }, allowed) {
   const left = row[slack];
   const size = Math.max(Math.abs(lower ?? 0), Math.abs(upper ?? 0), 1e-300);
   const data = { "data-key": slack, "data-value": left === null ? "" : String(left) };
   if (typeof left !== "number") return h("span", data, lower === upper ? "–" : "far from it");
-  if (left < -MET * size)
-    return h("span", { ...data, class: "bad" }, `missed by ${withUnit(-left, unit, 3)}`);
+  const [miss, most] = [-left, allowed?.[column] ?? 0];
+  if (miss > MET * size)
+    return miss <= most * (1 + MET)
+      ? h(
+          "span",
+          { ...data, class: "at-limit" },
+          `off by ${withUnit(miss, unit, 3)}, ${withUnit(most, unit, 3)} allowed`,
+        )
+      : h("span", { ...data, class: "bad" }, `missed by ${withUnit(miss, unit, 3)}`);
   if (left <= MET * size)
     return h("span", { ...data, class: "at-limit" }, lower === upper ? "met" : "at its limit");
   return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);

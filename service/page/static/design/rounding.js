@@ -12,6 +12,7 @@ import { sentenceOf } from "../lib/refusals.js";
 import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
 const USUAL = { si: "0.5", inch: "1/64" }; // mm, in; usual steps of drawings and stock
+const MISS = { si: "0.05", inch: "0.002" }; // mm, in; usual deviation of an exact length
 const COUNT = 5;
 
 /** @typedef {{ name: string, unit: string, input: HTMLInputElement, refuse: (sentence: string) => void, rule: string, node: HTMLElement }} Field */
@@ -21,7 +22,7 @@ const COUNT = 5;
  * @param {HTMLElement} place
  * @param {{
  *   job: string, number: number, base: Api.Row, columns: Api.Column[], requirements: Api.Requirements, objectives: Api.Objective[],
- *   applied: (row: Api.Row) => void, signal: AbortSignal,
+ *   applied: (row: Api.Row, allowed: Record<string, number>) => void, signal: AbortSignal,
  * }} options
  */
 export function rounding(
@@ -55,7 +56,7 @@ export function rounding(
           name: quantity,
           label: `${capitalised(title)}, allowed deviation`,
           unit,
-          value: "",
+          value: equal && unit === "mm" ? MISS[system()] : "",
           rule: `The allowed deviation of the ${title} must be above 0; leave the field empty to allow none.`,
         }),
       ),
@@ -155,7 +156,7 @@ export function rounding(
             {
               type: "button",
               "aria-label": `Apply round numbers ${n + 1}`,
-              onclick: () => applied(row),
+              onclick: () => applied(row, found.allowed),
             },
             "Apply",
           ),
@@ -173,6 +174,12 @@ export function rounding(
           "Round numbers and their cost",
           headsOf(heads, (n) => n && n < heads.length - 1),
           lines,
+        ),
+      found.designs.length > 1 &&
+        h(
+          "p",
+          { class: "quiet hint" },
+          "Sorted by the greatest loss in an objective, relative to its range over the front; least first.",
         ),
       found.notes.map((note) => h("p", { class: "quiet hint" }, `${capitalised(note)}.`)),
     );
@@ -194,8 +201,10 @@ export function rounding(
   /** @param {Api.RoundedRow} row */
   function judged({ misses: beyond, tightest }) {
     if (beyond.length) return beyond.map(missed);
-    const title = requirements.requirements.find(({ quantity }) => quantity === tightest)?.title;
-    return h("span", { class: "quiet" }, title ? `tightest: ${title}` : "all kept");
+    const title = requirements.requirements.find(
+      ({ quantity, lower, upper }) => quantity === tightest && lower !== upper,
+    )?.title;
+    return h("span", { class: "quiet" }, title ? `tightest: ${title}` : "all met");
   }
 }
 

@@ -2,7 +2,7 @@
 
 import { isAbort, post } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { text, withUnit } from "../lib/numbers.js";
+import { inDisplayUnits, text, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { lengthRow, LENGTHS, SAME } from "./length_row.js";
@@ -22,7 +22,8 @@ import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
  * - changed(answer, {lengths, impossible}): called with the API's answer that is drawn, null for the design itself, and with the
  *   lengths it belongs to; impossible: true if the changed lengths have no answer.
  *
- * Returns {apply(row), lengths(), dimensions()}: apply adopts the numbers of another design, lengths returns the lengths that are
+ * Returns {apply(row, allow), lengths(), dimensions()}: apply adopts the numbers of another design with its
+ * allowed deviations, lengths returns the lengths that are
  * shown, dimensions returns all changed and unchanged numbers, or null for the design itself.
  * @param {HTMLElement} place
  * @param {{
@@ -49,14 +50,17 @@ export function whatIf(
   },
 ) {
   const designLengths = lengthsOf(base);
-  const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? designLengths);
+  const {
+    value: linked = [],
+    allow: granted = [],
+    ...begun
+  } = /** @type {Page.Numbers} */ (start ?? designLengths);
   /** @type {Page.Lengths} */
   const lengths = begun;
   const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // extra variables
   /** Values that differ from the design's. @type {Record<string, number>} */
-  let values = Object.fromEntries(
-    linked.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]),
-  );
+  let values = numbersOf(linked);
+  let allow = numbersOf(granted);
   const rows = LENGTHS.map(([key, title]) =>
     lengthRow(key, title, ranges[key], (value) => {
       if (value !== null) lengths[key] = value;
@@ -131,8 +135,9 @@ export function whatIf(
     Object.keys(values).length > 0 ||
     LENGTHS.some(([key]) => !isSame(lengths[key], designLengths[key]));
 
-  /** Adopt the numbers of another design. @param {Api.Row} row */
-  function apply(row) {
+  /** Adopt the numbers of another design. @param {Api.Row} row @param {Record<string, number>} [allowed] */
+  function apply(row, allowed = {}) {
+    allow = allowed;
     Object.assign(lengths, lengthsOf(row));
     values = Object.fromEntries(
       further
@@ -166,6 +171,7 @@ export function whatIf(
         {
           ...lengths,
           values,
+          allow,
           angles: 180,
           hold: holding.checked && !keepsLengths ? last : null,
           nearest: true,
@@ -175,10 +181,10 @@ export function whatIf(
       if (moved() && !wrong()) {
         answer = reply;
         if (holding.checked && !keepsLengths && !again) adoptLengths(reply.design);
-        const others = Object.entries(values).map(([key, value]) => `${key}=${value}`);
-        changed(reply, {
-          lengths: { ...lengthsOf(reply.design), ...(others.length ? { value: others } : {}) },
-        });
+        const [value, allow] = [values, reply.allowed].map((numbers) =>
+          Object.entries(numbers).map((pair) => pair.join("=")),
+        );
+        changed(reply, { lengths: { ...lengthsOf(reply.design), value, allow } });
         showDesign();
       }
     } catch (error) {
@@ -272,6 +278,13 @@ function isSame(value, own) {
   return Math.abs(value - Number(own)) <= SAME * Math.abs(Number(own) || 1);
 }
 
+/** Return numbers by column from texts such as "stroke_mm=0.05". @param {string[]} texts @returns {Record<string, number>} */
+function numbersOf(texts) {
+  return Object.fromEntries(
+    texts.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]),
+  );
+}
+
 /** @param {Api.Objective[]} objectives @param {Api.Row} before @param {Api.Row} after */
 function comparison(objectives, before, after) {
   const rows = objectives.map((objective) => {
@@ -304,6 +317,7 @@ function comparison(objectives, before, after) {
 function sentences(answer, { ranges, requirements }, objectives, job) {
   const {
     broken,
+    deviations,
     outside,
     dominated_by: better,
     dominated_by_count: count,
@@ -336,6 +350,9 @@ function sentences(answer, { ranges, requirements }, objectives, job) {
         : "No listed design is better in every objective.";
   return [
     faults.map((sentence) => h("p", { class: "bad" }, sentence)),
+    deviations.map((words) =>
+      h("p", { class: "at-limit" }, `${inDisplayUnits(capitalised(words))}.`),
+    ),
     LENGTHS.filter(([key]) => outside.includes(key)).map(([key, title]) => {
       const [lower, upper] = ranges[key];
       const range = { title: title.toLowerCase(), unit: "mm", lower, upper };

@@ -3,7 +3,7 @@
 import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
-import { apiSystem, text, unitOf } from "../lib/numbers.js";
+import { apiSystem, inDisplayUnits, text, unitOf } from "../lib/numbers.js";
 import {
   askPerson,
   askRemarks,
@@ -132,8 +132,15 @@ export function bookmarksPanel(explorer) {
       async () => {
         await ask();
         const known = list.designs.find(({ number }) => number === one.number);
-        const { name: title, faults, number } = known ?? one;
-        askRemarks({ deciding, list, known, title, faults, send: (body) => change(number, body) });
+        const { name: title, number, ...judged } = known ?? one;
+        askRemarks({
+          ...judged,
+          deciding,
+          list,
+          known,
+          title,
+          send: (body) => change(number, body),
+        });
       },
       sayProblem,
       button,
@@ -146,6 +153,7 @@ export function bookmarksPanel(explorer) {
       decision,
       one && h("strong", {}, href ? h("a", { href }, one.decision) : one.decision),
       one && h("span", { class: "quiet" }, decisionText(list, false)),
+      one?.deviations.map((words) => `; ${inDisplayUnits(words)}`),
       one &&
         href && [
           " ",
@@ -221,6 +229,7 @@ export function bookmarksPanel(explorer) {
         one.faults.map((fault) =>
           h("div", { class: one.broken.length ? "bad" : "at-limit" }, fault),
         ),
+        one.deviations.map((words) => h("div", { class: "quiet" }, inDisplayUnits(words))),
       ),
       data.objectives.map((objective) => {
         const { column, unit } = objective;

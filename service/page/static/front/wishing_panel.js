@@ -298,7 +298,12 @@ export function wishingPanel(explorer) {
       kept: () => explorer.kept?.ask(),
       lengths: () => lengthsOf(wished),
     });
-    remarks.show({ number: null, title: `Wished, near design ${near}`, faults: [] });
+    remarks.show({
+      number: null,
+      title: `Wished, near design ${near}`,
+      faults: [],
+      deviations: [],
+    });
     fill(
       answer,
       sentence,

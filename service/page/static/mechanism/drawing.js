@@ -44,11 +44,12 @@ const EVERY = 100; // ms between values during motion; faster changes are unread
  */
 export function drawing(place, { label, grips = null }) {
   const parts = movingParts();
+  const words = svg("g"); // above the links
   const handle = svg("circle", { class: "handle" });
   // Fixed parts are a separate picture, so that they are not repainted in every frame.
   const [still, moving] = [
     svg("svg", { class: "still" }),
-    svg("svg", { class: "moving" }, parts.nodes, handle, grips?.nodes),
+    svg("svg", { class: "moving" }, parts.nodes, words, handle, grips?.nodes),
   ];
   const node = h(
     "div",
@@ -104,6 +105,7 @@ export function drawing(place, { label, grips = null }) {
             hasStrokeAngles: grips !== null,
           }),
     );
+    words.replaceChildren(...still.querySelectorAll("text"));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({
       linkage,
@@ -112,7 +114,7 @@ export function drawing(place, { label, grips = null }) {
       tall,
       outlines,
       link,
-      written,
+      written: written && !grips, // beside its field it need not be
       crossed: !lever && crossed(linkage, motion, turns),
     });
     parts.forces.size(motion, view, options.largest_force);
@@ -237,6 +239,8 @@ function movingParts() {
   const marked = svg("g", {}, normal, arc, value);
   const forces = arrows();
   let radius = 0; // of the arc
+  let beyond = 0; // the slider pin, where the value is, or 0 in a piston
+  let inside = 0; // the piston, from the slider line
   let lastWritten = 0; // time of the last written value
   let side = "";
   return {
@@ -245,29 +249,34 @@ function movingParts() {
     marked,
     /** @param {{ linkage: Page.Lengths, view: View, block: number, tall: number, outlines: Api.Outlines | undefined, link: number, written: boolean, crossed: boolean }} options */
     size({ linkage, view, block: size, tall, outlines, link, written, crossed }) {
-      const [wide, high] = [1.5 * size * view.unit, tall * view.unit];
+      const [across, high] = [1.5 * size * view.unit, tall * view.unit];
       more.size(view, outlines, linkage.offset_mm);
       actuator.size(view, linkage, outlines?.lever, link);
       for (const one of [sliderGroup, rodGroup])
         one.toggleAttribute("hidden", Boolean(outlines?.lever));
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
-      measure(block, { x: -wide / 2, y: -high / 2, width: wide, height: high });
+      measure(block, { x: -across / 2, y: -high / 2, width: across, height: high });
       for (const one of pins) measure(one, { r: Math.max(2.5, 0.28 * link) });
       measure(pins[1], { cx: linkage.crank_mm * view.unit });
       measure(pins[2], { cx: linkage.rod_mm * view.unit });
       const long = linkage.rod_mm * view.unit;
-      length.textContent =
-        written && long > 150 && !outlines?.lever ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
-      // Along the rod outside the guide, never upside down: on the crossed branch it points the other way.
+      // In the rod, where the crank never covers it, and never upside down: on the crossed branch it points the other way.
+      const words = `rod ${withUnit(linkage.rod_mm, "mm", 4)}`;
+      const [from, wide] = [linkage.crank_mm * view.unit + link, 6.6 * words.length];
+      const fits = written && link >= 13 && !outlines?.lever && from + wide < long - link;
+      length.textContent = fits ? words : "";
       length.setAttribute(
         "transform",
-        `translate(${0.28 * long} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`,
+        `translate(${from + wide / 2} ${crossed ? -4 : 4})${crossed ? " rotate(180)" : ""}`,
       );
       const line = view.y(linkage.offset_mm);
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
-      radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));
+      radius = Math.max(26, 0.54 * high + 14, Math.min(0.42 * long, 90, room)); // outside the guide
       side = "";
+      beyond = outlines?.cylinders?.length ? 0 : across / 2 + 3;
+      inside = high / 2 - 9;
+      value.toggleAttribute("hidden", beyond ? high < 14 : inside < link / 2 + 9);
     },
     /** @param {ReturnType<typeof leverAt>} at */
     moveLever({ pivot, pin, foot }) {
@@ -303,8 +312,12 @@ function movingParts() {
     if (side !== `${up} ${away}`) {
       side = `${up} ${away}`;
       normal.setAttribute("d", `M0 0v${up * (radius + 8)}`);
-      value.setAttribute("transform", `translate(${away * 6} ${up * (radius + 2) + 4})`);
-      value.setAttribute("text-anchor", away > 0 ? "start" : "end");
+      // On the slider line, beyond the slider: no link, hatching or dimension is there. A piston has it in itself, off the rod.
+      value.setAttribute(
+        "transform",
+        beyond ? `translate(${away * beyond} 4)` : `translate(0 ${4 - up * inside})`,
+      );
+      value.setAttribute("text-anchor", !beyond ? "middle" : away > 0 ? "start" : "end");
     }
     if (typeof degrees !== "number" || (!settled && performance.now() - lastWritten < EVERY))
       return;

@@ -7,7 +7,7 @@ import { extremes } from "../charts/cycle.js";
  * @typedef {ReturnType<typeof fitFrame>} View
  */
 
-const MARGIN = 26; // pixels for parts beside the mechanism
+const MARGIN = 32; // pixels for parts beside the mechanism
 const HEIGHTS = [170, 430];
 const LOW = 96; // minimum height of a small drawing
 

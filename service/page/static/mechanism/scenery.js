@@ -10,6 +10,7 @@ import { barrel, walls } from "./attached_parts.js";
 /** @import { View } from "./frame.js" */
 
 const PITCH = 9; // pixels between hatching lines
+const LETTER = 6.6; // pixels, mean width in labels
 
 /**
  * Return the fixed parts as SVG elements.
@@ -49,7 +50,11 @@ export function scenery({
     x(Math.min(...positions) - 1.2 * block),
     x(Math.max(...positions) + 1.2 * block),
   ];
-  const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
+  const far = positions.reduce((a, b) => (Math.abs(a) > Math.abs(b) ? a : b));
+  // The offset is dimensioned behind the crank, where no link passes.
+  const beside =
+    far > 0 ? Math.min(x(-r) - link / 2, start) - 6 : Math.max(x(r) + link / 2, end) + 6;
+  const reach = [Math.min(x(-1.15 * r), start, beside), Math.max(x(1.15 * r), end, beside)];
   return [
     line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
@@ -62,12 +67,14 @@ export function scenery({
     ...(outlines?.cylinders ?? []).map((cylinder) => walls(view, cylinder, e)),
     outlines?.actuator ? barrel(view, outlines.actuator, e) : null,
     swings || arc ? null : rotation(view, r, direction),
-    offset(view, e, reach[0] + 20, written),
+    offset(view, e, beside, far > 0 ? -4 : 12, written),
     written &&
       ends?.every(Number.isFinite) &&
-      strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
-    written && !swings && crankOf(view, r, e, link),
-    hasStrokeAngles && ends?.every(Number.isFinite) && strokeAngles(view, r, e, centres, direction),
+      strokeOf(view, linkage, ends, 0.54 * tall * view.unit + 15, link, swings),
+    written && !swings && crankOf(view, r, e, far, link),
+    hasStrokeAngles &&
+      ends?.every(Number.isFinite) &&
+      strokeAngles(view, linkage, centres, direction, 0.54 * tall * view.unit, 1.7 * link),
     bearing(x(0), y(0), link),
   ];
 }
@@ -138,87 +145,109 @@ function rotation(view, r, direction) {
   return svg("path", { class: "rotation", d: `${arc}M${wing(0.4)}L${end}L${wing(-0.4)}` });
 }
 
-/** @param {View} view @param {number} e @param {number} x @param {boolean} written */
-function offset(view, e, x, written) {
+/** @param {View} view @param {number} e @param {number} x @param {number} beside of the words @param {boolean} written */
+function offset(view, e, x, beside, written) {
   const [from, to] = [view.y(0), view.y(e)];
   if (Math.abs(to - from) < 16) return null;
   const tip = Math.sign(to - from) * 6;
+  const words = `offset ${withUnit(e, "mm", 4)}`;
+  const long = LETTER * words.length + 8;
+  const room = Math.abs(to - from) > long; // else beyond the pivot
+  const free = from - Math.sign(tip) * long;
   const heads = `M${x - 3} ${from + tip}L${x} ${from}L${x + 3} ${from + tip}M${x - 3} ${to - tip}L${x} ${to}L${x + 3} ${to - tip}`;
   return svg(
     "g",
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
-    // Beside the line, not over it to the right, where the crank passes.
-    !written || view.width < 330
-      ? null
-      : svg(
-          "text",
-          {
-            transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`,
-            "text-anchor": "middle",
-          },
-          `offset ${withUnit(e, "mm", 4)}`,
-        ),
+    written &&
+      (room || (free > 0 && free < view.height)) &&
+      svg(
+        "text",
+        {
+          transform: `translate(${x + beside} ${room ? (from + to) / 2 : from - 1.5 * tip}) rotate(-90)`,
+          "text-anchor": room ? "middle" : tip > 0 ? "start" : "end",
+        },
+        words,
+      ),
   );
 }
 
-/** Dimension the stroke, outside the guide. @param {View} view @param {Page.Point} ends @param {number} y @param {boolean} swings */
-function strokeOf(view, ends, y, swings) {
+/**
+ * Dimension the stroke, outside the guide and the tangent from the outer slider pin to the crank circle, beyond which no link passes.
+ * @param {View} view @param {Page.Lengths} linkage @param {Page.Point} ends @param {number} least distance from the slider line, pixels
+ * @param {number} link @param {boolean} swings
+ */
+function strokeOf(view, { crank_mm: r, offset_mm: e }, ends, least, link, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
   const long = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);
   const words = swings ? `travel ${long}` : `stroke ${long}`;
-  const room = to - from > 90;
+  const half = (LETTER * words.length) / 2;
+  const room = to - from > 2 * half + 8;
+  const outward = ends[0] + ends[1] > 0;
+  const beyond = outward ? to + 6 : from - 6;
+  const far = Math.max(...ends.map(Math.abs));
+  const slope = Math.asin(Math.min(1, r / Math.hypot(far, e))) - Math.atan(Math.abs(e) / far);
+  const depth = ((to - from) / 2 + half) * Math.tan(slope) + link / 2 / Math.cos(slope);
+  const side = e < 0 ? 1 : -1;
+  const y = view.y(e) + side * Math.max(least, room ? depth : 0);
   const heads = `M${from + 6} ${y - 3}L${from} ${y}L${from + 6} ${y + 3}M${to - 6} ${y - 3}L${to} ${y}L${to - 6} ${y + 3}`;
   return svg(
     "g",
     { class: "dimension stroke" },
     svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),
-    !room && to + 92 > view.width
-      ? null
-      : svg(
-          "text",
-          {
-            x: room ? (from + to) / 2 : to + 6,
-            y: room ? y - 4 : y + 4,
-            "text-anchor": room ? "middle" : "start",
-          },
-          words,
-        ),
+    (room || (outward ? beyond + 2 * half < view.width : beyond > 2 * half)) &&
+      svg(
+        "text",
+        {
+          x: room ? (from + to) / 2 : beyond,
+          y: room ? y + (side > 0 ? 13 : -4) : y + 4,
+          "text-anchor": room ? "middle" : outward ? "start" : "end",
+        },
+        words,
+      ),
   );
 }
 
-/** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e @param {number} link */
-function crankOf(view, r, e, link) {
+/** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e @param {number} far @param {number} link */
+function crankOf(view, r, e, far, link) {
   const radius = view.unit * r;
   if (radius < 45) return null;
   const down = e < 0 ? -1 : 1;
-  const turn = 0.35 * Math.PI; // outward, away from the slider line
+  // Away from the slider line, at least where the tangent from the outer slider pin touches the circle.
+  const touch = Math.acos(Math.min(1, r / Math.hypot(far, e))) - Math.atan(Math.abs(e / far));
+  const turn = Math.max(0.35 * Math.PI, touch);
+  const side = Math.sign(far);
   /** @param {number} size @returns {Page.Point} */
   const at = (size) => [
-    view.x(0) + size * Math.cos(turn),
+    view.x(0) + side * size * Math.cos(turn),
     view.y(0) + down * size * Math.sin(turn),
   ];
   const [x, y] = at(radius);
   const [left, edge] = at(radius + link / 2 + 4); // the value stays clear of the crank's end as it passes
-  const side = Math.atan2(y - view.y(0), x - view.x(0));
+  const along = Math.atan2(y - view.y(0), x - view.x(0));
   /** @param {number} by */
   const wing = (by) =>
-    `${(x - 7 * Math.cos(side + by)).toFixed(1)} ${(y - 7 * Math.sin(side + by)).toFixed(1)}`;
+    `${(x - 7 * Math.cos(along + by)).toFixed(1)} ${(y - 7 * Math.sin(along + by)).toFixed(1)}`;
   return svg(
     "g",
     { class: "dimension radius" },
     svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
-    svg("text", { x: left, y: edge + (down > 0 ? 10 : -1) }, `crank ${withUnit(r, "mm", 4)}`),
+    svg(
+      "text",
+      { x: left, y: edge + (down > 0 ? 10 : -1), "text-anchor": side > 0 ? "start" : "end" },
+      `crank ${withUnit(r, "mm", 4)}`,
+    ),
   );
 }
 
 /**
  * Draw the crank angles of the outward and the inward stroke, whose ratio is the time ratio at constant speed.
- * @param {View} view @param {number} r @param {number} e @param {Centre[]} centres @param {number} direction
+ * @param {View} view @param {Page.Lengths} linkage @param {Centre[]} centres @param {number} direction
+ * @param {number} rail distance of the guide from the slider line, pixels @param {number} foot height of the bearing
  */
-function strokeAngles(view, r, e, [inner, outer], direction) {
+function strokeAngles(view, { crank_mm: r, offset_mm: e }, [inner, outer], direction, rail, foot) {
   const radius = 0.5 * view.unit * r;
-  const share = e < 0 ? 0.6 : 0.4; // values beside the dimension of the crank
+  const shares = e < 0 ? [0.6, 0.7, 0.8, 0.4, 0.3] : [0.4, 0.3, 0.2, 0.6, 0.7]; // beside the dimension of the crank
   if (radius < 24) return null;
   const span = wrappedAngle(outer.angle - inner.angle); // counter-clockwise from the inner to the outer dead centre
   /** @param {number} degrees @param {number} size */
@@ -230,14 +259,24 @@ function strokeAngles(view, r, e, [inner, outer], direction) {
     { from: inner.angle, over: span, name: direction > 0 ? "outward" : "inward" },
     { from: outer.angle, over: 360 - span, name: direction > 0 ? "inward" : "outward" },
   ].map(({ from, over, name }) => {
-    const [x, y] = at(from + share * over, 1.45 * radius);
+    const places = shares.map((share) => at(from + share * over, 1.45 * radius));
+    /** Whether it is off the guide, and the hatching of the bearing. @param {number[]} place */
+    const isClear = ([x, y]) =>
+      Math.abs(y - view.y(e)) > rail + 16 &&
+      (Math.abs(x - view.x(0)) > 1.15 * foot + 24 || Math.abs(y - view.y(0) - foot) > 14);
+    const place = places.find(isClear);
     return svg(
       "g",
       { class: `stroke-angle ${name}` },
       svg("path", {
         d: `M${at(from, radius)}A${radius} ${radius} 0 ${over > 180 ? 1 : 0} 0 ${at(from + over, radius)}`,
       }),
-      svg("text", { x, y: y + 4, "text-anchor": "middle" }, `${text(over, "deg", 4)}°`),
+      place &&
+        svg(
+          "text",
+          { class: `stroke-angle ${name}`, x: place[0], y: place[1] + 4, "text-anchor": "middle" },
+          `${text(over, "deg", 4)}°`,
+        ),
     );
   });
 }

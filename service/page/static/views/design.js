@@ -117,7 +117,12 @@ export async function show(place, { parts, query, signal }) {
     const title = capitalised(name);
     named.textContent = title.startsWith(`Design ${number}`) ? title : `${title} · ${number}`;
     undo.hidden = changed === null;
-    remarks.show({ number: bookmark, title, faults: changed?.faults ?? [] });
+    remarks.show({
+      number: bookmark,
+      title,
+      faults: changed?.faults ?? [],
+      deviations: changed?.deviations ?? [],
+    });
   };
   const [ofPlace, ofWay] = Array.from({ length: 2 }, () =>
     h(
@@ -131,6 +136,7 @@ export async function show(place, { parts, query, signal }) {
     design: number,
     list: kept,
     dimensions: () => sliders.dimensions(),
+    allow: () => changed?.allowed,
     lengths: () => sliders.lengths(),
     kept: ({ name, number: bookmark }) => {
       Object.assign(changed ?? requirements, { name, bookmark });
@@ -201,6 +207,7 @@ export async function show(place, { parts, query, signal }) {
       tab,
       ...changedNumbers,
       value: changedNumbers?.value?.join(","),
+      allow: changedNumbers?.allow?.join(","),
     });
   const further = analyses(
     { sections: places.topics, tabs: places.analyses },
@@ -211,6 +218,7 @@ export async function show(place, { parts, query, signal }) {
       fronts: asked.fronts,
       swings: !turns,
       isLever,
+      lacking: requirements.lacking,
       tolerances: requirements.tolerances,
       tab,
       chooseTab: (now) => {
@@ -256,6 +264,7 @@ export async function show(place, { parts, query, signal }) {
       name: "What if",
       series: "what-if",
       row: changed.design,
+      allowed: changed.allowed,
       violations: changed.violations,
       ...cycleOf(changed.cycle),
     };
@@ -345,13 +354,14 @@ function startOf(query) {
   const texts = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
   if (texts.every(([, text]) => text === null)) return {};
   const bad = texts.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
-  const value = query.get("value")?.split(",");
+  const [value, allow] = ["value", "allow"].map((key) => query.get(key)?.split(","));
   if (!bad)
     return {
       lengths: /** @type {Page.Numbers} */ (
         /** @type {unknown} */ ({
           ...Object.fromEntries(texts.map(([key, text]) => [key, Number(text)])),
-          ...(value && { value }),
+          value,
+          allow,
         })
       ),
     };
