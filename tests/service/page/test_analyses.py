@@ -42,7 +42,8 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     questions = [one for one in (*listed["topics"], *listed["questions"]) if one["name"] not in OWN]
     path = f"{address}{API}/jobs/{solved.number}/designs/2/requirements"
     lacking = httpx.get(path, timeout=60.0).json()["lacking"]
-    fitting = sorted((one for one in questions if one["name"] not in lacking), key=lambda one: not one["premise"])
+    fitting = [one for one in questions if one["name"] not in lacking]
+    fitting.sort(key=lambda one: not one["premise"] or not one["path"].startswith("topics/"))
     fronts = [one["title"] for one in listed["fronts"] if one["name"] not in OWN]
     expect(page.get_by_role("tablist", name="Analyses", exact=True).get_by_role("tab")).to_have_text(
         [*(one["title"] for one in fitting), *fronts]

@@ -54,7 +54,9 @@ export function analyses(
   const [absent, fitting] = [true, false].map((lacks) =>
     questions.filter((one) => isListed(one) && lacking.includes(one.name) === lacks),
   );
-  fitting.sort((one, other) => Number(!one.premise) - Number(!other.premise)); // of this machine first
+  /** Whether an analysis is of a machine like this one in particular. @param {Api.Topic} of */
+  const isSpecial = ({ premise, path }) => Boolean(premise) && path.startsWith("topics/");
+  fitting.sort((one, other) => Number(isSpecial(other)) - Number(isSpecial(one)));
   const listed = [...fitting.map(ofDesign), ...ofFront, ...absent.map(ofDesign)];
   const fit = listed.length - absent.length; // number of those that suit the machine
   let chosen = Math.max(

@@ -11,8 +11,11 @@ import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
-const USUAL = { si: "0.5", inch: "1/64" }; // mm, in; usual steps of drawings and stock
-const MISS = { si: "0.05", inch: "0.002" }; // mm, in; usual deviation of an exact length
+// mm, in; usual steps of drawings and stock, and a usual deviation of an exact length
+const [USUAL, MISS] = [
+  { si: "0.5", inch: "1/64" },
+  { si: "0.05", inch: "0.002" },
+];
 const COUNT = 5;
 
 /** @typedef {{ name: string, unit: string, input: HTMLInputElement, refuse: (sentence: string) => void, rule: string, node: HTMLElement }} Field */

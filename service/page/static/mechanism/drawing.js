@@ -239,8 +239,7 @@ function movingParts() {
   const marked = svg("g", {}, normal, arc, value);
   const forces = arrows();
   let radius = 0; // of the arc
-  let beyond = 0; // the slider pin, where the value is, or 0 in a piston
-  let inside = 0; // the piston, from the slider line
+  let [beyond, inside] = [0, 0]; // places of the value: beyond the slider pin, or where that is 0 in the piston
   let lastWritten = 0; // time of the last written value
   let side = "";
   return {
@@ -264,8 +263,8 @@ function movingParts() {
       // In the rod, where the crank never covers it, and never upside down: on the crossed branch it points the other way.
       const words = `rod ${withUnit(linkage.rod_mm, "mm", 4)}`;
       const [from, wide] = [linkage.crank_mm * view.unit + link, 6.6 * words.length];
-      const fits = written && link >= 13 && !outlines?.lever && from + wide < long - link;
-      length.textContent = fits ? words : "";
+      length.textContent =
+        written && link >= 13 && !outlines?.lever && from + wide < long - link ? words : "";
       length.setAttribute(
         "transform",
         `translate(${from + wide / 2} ${crossed ? -4 : 4})${crossed ? " rotate(180)" : ""}`,
@@ -274,8 +273,7 @@ function movingParts() {
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
       radius = Math.max(26, 0.54 * high + 14, Math.min(0.42 * long, 90, room)); // outside the guide
       side = "";
-      beyond = outlines?.cylinders?.length ? 0 : across / 2 + 3;
-      inside = high / 2 - 9;
+      [beyond, inside] = [outlines?.cylinders?.length ? 0 : across / 2 + 3, high / 2 - 9];
       value.toggleAttribute("hidden", beyond ? high < 14 : inside < link / 2 + 9);
     },
     /** @param {ReturnType<typeof leverAt>} at */

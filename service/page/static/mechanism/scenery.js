@@ -153,14 +153,13 @@ function offset(view, e, x, beside, written) {
   const words = `offset ${withUnit(e, "mm", 4)}`;
   const long = LETTER * words.length + 8;
   const room = Math.abs(to - from) > long; // else beyond the pivot
-  const free = from - Math.sign(tip) * long;
   const heads = `M${x - 3} ${from + tip}L${x} ${from}L${x + 3} ${from + tip}M${x - 3} ${to - tip}L${x} ${to}L${x + 3} ${to - tip}`;
   return svg(
     "g",
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
     written &&
-      (room || (free > 0 && free < view.height)) &&
+      (room || (tip > 0 ? from > long : from + long < view.height)) &&
       svg(
         "text",
         {
@@ -179,12 +178,10 @@ function offset(view, e, x, beside, written) {
  */
 function strokeOf(view, { crank_mm: r, offset_mm: e }, ends, least, link, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
-  const long = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);
-  const words = swings ? `travel ${long}` : `stroke ${long}`;
+  const words = `${swings ? "travel" : "stroke"} ${withUnit(Math.abs(ends[1] - ends[0]), "mm", 4)}`;
   const half = (LETTER * words.length) / 2;
   const room = to - from > 2 * half + 8;
-  const outward = ends[0] + ends[1] > 0;
-  const beyond = outward ? to + 6 : from - 6;
+  const beyond = ends[0] + ends[1] > 0 ? to + 6 : from - 6;
   const far = Math.max(...ends.map(Math.abs));
   const slope = Math.asin(Math.min(1, r / Math.hypot(far, e))) - Math.atan(Math.abs(e) / far);
   const depth = ((to - from) / 2 + half) * Math.tan(slope) + link / 2 / Math.cos(slope);
@@ -195,13 +192,13 @@ function strokeOf(view, { crank_mm: r, offset_mm: e }, ends, least, link, swings
     "g",
     { class: "dimension stroke" },
     svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),
-    (room || (outward ? beyond + 2 * half < view.width : beyond > 2 * half)) &&
+    (room || (beyond > to ? beyond + 2 * half < view.width : beyond > 2 * half)) &&
       svg(
         "text",
         {
           x: room ? (from + to) / 2 : beyond,
           y: room ? y + (side > 0 ? 13 : -4) : y + 4,
-          "text-anchor": room ? "middle" : outward ? "start" : "end",
+          "text-anchor": room ? "middle" : beyond > to ? "start" : "end",
         },
         words,
       ),
@@ -214,8 +211,10 @@ function crankOf(view, r, e, far, link) {
   if (radius < 45) return null;
   const down = e < 0 ? -1 : 1;
   // Away from the slider line, at least where the tangent from the outer slider pin touches the circle.
-  const touch = Math.acos(Math.min(1, r / Math.hypot(far, e))) - Math.atan(Math.abs(e / far));
-  const turn = Math.max(0.35 * Math.PI, touch);
+  const turn = Math.max(
+    0.35 * Math.PI,
+    Math.acos(Math.min(1, r / Math.hypot(far, e))) - Math.atan(Math.abs(e / far)),
+  );
   const side = Math.sign(far);
   /** @param {number} size @returns {Page.Point} */
   const at = (size) => [
@@ -259,12 +258,14 @@ function strokeAngles(view, { crank_mm: r, offset_mm: e }, [inner, outer], direc
     { from: inner.angle, over: span, name: direction > 0 ? "outward" : "inward" },
     { from: outer.angle, over: 360 - span, name: direction > 0 ? "inward" : "outward" },
   ].map(({ from, over, name }) => {
-    const places = shares.map((share) => at(from + share * over, 1.45 * radius));
-    /** Whether it is off the guide, and the hatching of the bearing. @param {number[]} place */
-    const isClear = ([x, y]) =>
-      Math.abs(y - view.y(e)) > rail + 16 &&
-      (Math.abs(x - view.x(0)) > 1.15 * foot + 24 || Math.abs(y - view.y(0) - foot) > 14);
-    const place = places.find(isClear);
+    const place = shares
+      .map((share) => at(from + share * over, 1.45 * radius))
+      .find(
+        ([x, y]) =>
+          // off the guide and the hatching of the bearing
+          Math.abs(y - view.y(e)) > rail + 16 &&
+          (Math.abs(x - view.x(0)) > 1.15 * foot + 24 || Math.abs(y - view.y(0) - foot) > 14),
+      );
     return svg(
       "g",
       { class: `stroke-angle ${name}` },

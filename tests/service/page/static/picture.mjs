@@ -1,6 +1,7 @@
 /** The little of a document in which drawings are made, and the outlines of what they show. */
 
-globalThis.Node = class {
+/** An element, with what drawings use of it. */
+export class Node {
   constructor(tag) {
     Object.assign(this, { tag, attributes: {}, children: [], clientWidth: 0 });
     this.classList = { toggle() {} };
@@ -36,7 +37,8 @@ globalThis.Node = class {
       ...child.querySelectorAll(tag),
     ]);
   }
-};
+}
+Object.assign(globalThis, { Node });
 globalThis.document = {
   createElement: (tag) => new Node(tag),
   createElementNS: (_, tag) => new Node(tag),

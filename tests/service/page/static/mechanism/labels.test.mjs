@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import "../browser.mjs";
-import { corners, outline, overlap } from "../picture.mjs";
+import { corners, Node, outline, overlap } from "../picture.mjs";
 import { draws } from "../draws.mjs";
 
 const { drawing } = await import("../../../../../service/page/static/mechanism/drawing.js");
