@@ -15,7 +15,7 @@ from ....objectives.kinds import TIME, System
 from ....optimise.decisions.price_of_robustness import Comparison, compare_fronts
 from ...designs.design_selection_options import minimised_values
 from ...designs.display_units import convert_objective
-from ...designs.front_comparison import comparison_sentences
+from ...designs.front_comparison import comparison_sentences, cost_of_change
 from ...preview.partial_job import ranges_of
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
 from ...runs.result import Result, StoredObjective, objective_record
@@ -50,14 +50,17 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
             comparison = compare_fronts(values, tolerance=tolerance)
     places = differences_between_jobs([run.tables for run in runs if run.tables is not None])
     sentences = {system: _better_sentences(solved, system) for system in _SYSTEMS}
+    parts = [run.name for run in solved], [run.result for run in solved]
+    costs = {system: cost_of_change(*parts, system) for system in _SYSTEMS}
     caution = _different_jobs_sentence(len(runs), places) if sentences["metric"] else []
 
     def record(units: System) -> dict[str, Any]:
         measures = {} if comparison is None else _front_measures(solved, comparison, units)
         found = [{"place": place, "values": list(values)} for place, values in places]
-        return measures | {"sentences": [*caution, *sentences[units]], "differences": found}
+        return measures | {"sentences": [*costs[units], *caution, *sentences[units]], "differences": found}
 
     blocks: list[Block] = [] if comparison is None else [_heading(solved)]
+    blocks += _better_blocks(runs, costs)
     blocks += [sentence("{text}.", text=f"{text[:1].upper()}{text[1:]}") for text in caution]
     blocks += _better_blocks(runs, sentences)
     blocks += [] if comparison is None else [*_verdict_blocks(solved, comparison), *_measure_tables(solved, comparison)]

@@ -90,7 +90,9 @@ def test_sentences_count_the_designs_that_the_other_run_does_not_match(
                 assert f"run {second} matches or beats every design of run {first}, to 2 % of each range" in sentences
 
 
-def test_a_comparison_of_different_jobs_begins_by_saying_so(client: httpx.Client, store: Store, solved: Solved) -> None:
+def test_a_comparison_of_different_jobs_says_what_the_change_costs_and_that_they_differ(
+    client: httpx.Client, store: Store, solved: Solved
+) -> None:
     other = deepcopy(TABLES)
     other["mechanism"]["speed"] = "77 rpm"
     other["constraints"]["stroke"] = {"equals": "123 mm"}
@@ -99,13 +101,14 @@ def test_a_comparison_of_different_jobs_begins_by_saying_so(client: httpx.Client
     other["optimiser"] = {"seed": 9}
     numbers = [store_result(store, solved.result, TABLES), store_result(store, solved.result, other)]
     found = client.get(f"{API}/comparison", params={"job": numbers}).json()
-    first, *rest = found["sentences"]
+    cost, first, *rest = found["sentences"]
+    assert cost.startswith(f"at best, run {numbers[1]} instead of run {numbers[0]} does not change time ratio and ")
     subject, _, names = first.partition(": ")
     assert subject == "the two jobs state different problems"
     different = {"speed", "stroke", "load", "rod / (2.5 * crank)"}
     assert set(names.removesuffix("; only the numbers are compared").split(", ")) == different
     assert any("matches or beats every design" in one for one in rest)
-    assert "The two jobs state different problems" in str(found["blocks"][1])
+    assert "The two jobs state different problems" in str(found["blocks"][2])
 
 
 def test_fronts_of_nested_ranges_are_said_to_be_samples(client: httpx.Client, store: Store, solved: Solved) -> None:
@@ -136,6 +139,7 @@ def test_the_best_of_each_objective_is_said_with_who_has_it(client: httpx.Client
     most = max(float(str(row[KEYS[0]])) for row in solved.result.designs)
     assert f"best time ratio: run {second} with {most + 1:.4g}, against {most:.4g} of run {first}" in found["sentences"]
     assert any(one.startswith("best least transmission angle: all reach") for one in found["sentences"])
+    assert found["sentences"][0].startswith(f"at best, run {second} instead of run {first} gains 1 of time ratio, does")
     assert found["differences"] == []
 
 
@@ -157,7 +161,7 @@ def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
         fewer = replace(solved.result, exact=None, objectives=solved.result.objectives[:1])
         measures = service.comparison([numbers[0], store_result(store, fewer, TABLES)])
         assert measures.keys() == {"sentences", "differences"}
-        assert measures["sentences"][0].startswith("best time ratio: ")
+        assert measures["sentences"][1].startswith("best time ratio: ")
         with pytest.raises(InputError, match="compare may only be given tolerance; got of"):
             service.comparison(numbers, of=1.0)
         with pytest.raises(InputError, match="compare needs several jobs; got one"):
