@@ -100,7 +100,7 @@ def test_the_stroke_in_the_drawing_is_that_of_the_api_to_its_last_digit(
     page = opened(3, f"?crank_mm={crank}&rod_mm={rod}&offset_mm={offset}")
     lengths = {"crank_mm": crank, "rod_mm": rod, "offset_mm": offset}
     design = httpx.post(f"{service}{solved.path}/designs/3/what-if", json=lengths, timeout=60.0).json()["design"]
-    expect(page.locator(".dimension.stroke text")).to_have_text(f"stroke {design['stroke_mm']:.4g}\u00a0mm")
+    expect(page.locator("text.dimension.stroke")).to_have_text(f"stroke {design['stroke_mm']:.4g}\u00a0mm")
 
 
 def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:

@@ -63,7 +63,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     excess = math.degrees(math.asin(e / (l - r)) - math.asin(e / (l + r)))
     expect(locate_fact(page, "Time ratio")).to_have_text(f"{(180 + excess) / (180 - excess):#.4g}, slow outward")
     expect(locate_fact(page, "Outward stroke")).to_contain_text(f"{180 + excess:.4g}°")
-    expect(page.locator(".stroke-angle.outward text")).to_have_text(f"{180 + excess:.4g}°")
+    expect(page.locator("text.stroke-angle.outward")).to_have_text(f"{180 + excess:.4g}°")
     least = math.degrees(math.acos((r + e) / l))
     expect(locate_fact(page, "Least transmission angle")).to_have_text(f"{least:.4g}°")
     expect(page.locator(".curves .chart .curve")).to_have_count(4)
@@ -195,7 +195,7 @@ def test_a_crank_dragged_outwards_stays_in_the_picture(form: Open, store: Store)
 
 
 CLEARANCE = """range => {
-  const label = document.querySelector(".dimension.radius text").getBoundingClientRect();
+  const label = document.querySelector("text.dimension.radius").getBoundingClientRect();
   const crank = document.querySelector(".machines .link.crank");
   const width = crank.getBBox().height;
   return [270, 280, 290, 296, 297, 300, 310].map(angle => {
@@ -214,12 +214,12 @@ CLEARANCE = """range => {
 @pytest.mark.slow
 def test_the_crank_does_not_hide_its_dimension_as_it_passes(form: Open, store: Store) -> None:
     page = form(store, "#/look?crank_mm=60&rod_mm=230&offset_mm=70", viewport={"width": 1280, "height": 900})
-    expect(page.locator(".dimension.radius text")).to_have_text("crank 60\xa0mm")
+    expect(page.locator("text.dimension.radius")).to_have_text("crank 60\xa0mm")
     gaps = page.locator(".strip input[type=range]").first.evaluate(CLEARANCE)
     assert len({round(gap, 6) for gap in gaps}) == len(gaps)  # the crank has moved
     assert min(gaps) >= 0.0
     picture = page.locator(".machines svg").first.bounding_box()
-    label = page.locator(".dimension.radius text").bounding_box()
+    label = page.locator("text.dimension.radius").bounding_box()
     assert picture is not None
     assert label is not None
     assert label["y"] + label["height"] <= picture["y"] + picture["height"]

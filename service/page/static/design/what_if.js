@@ -20,16 +20,15 @@ import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
  * - ranges, requirements: as the API gives them; objectives, front: those of the job.
  * - start: lengths to begin with, or null; wrong: why the lengths in the page's address cannot be used.
  * - changed(answer, {lengths, impossible}): called with the API's answer that is drawn, null for the design itself, and with the
- *   lengths it belongs to; impossible: true if the changed lengths have no answer.
+ *   lengths it belongs to; edited: whether a number was moved or typed; impossible: true if the changed lengths have no answer.
  *
  * Returns {apply(row, allow), lengths(), dimensions()}: apply adopts the numbers of another design with its
- * allowed deviations, lengths returns the lengths that are
- * shown, dimensions returns all changed and unchanged numbers, or null for the design itself.
+ * allowed deviations, lengths returns the lengths that are shown, dimensions returns all changed and unchanged numbers, or null for the design itself.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
  *   objectives: Api.Objective[], front: Api.Row[], start: Page.Numbers | null, wrong: string, signal: AbortSignal,
- *   changed: (answer: Api.WhatIf | null, how?: { lengths?: Page.Numbers, impossible?: boolean }) => void,
+ *   changed: (answer: Api.WhatIf | null, how?: { lengths?: Page.Numbers, impossible?: boolean, edited?: boolean }) => void,
  * }} options
  */
 export function whatIf(
@@ -184,7 +183,10 @@ export function whatIf(
         const [value, allow] = [values, reply.allowed].map((numbers) =>
           Object.entries(numbers).map((pair) => pair.join("=")),
         );
-        changed(reply, { lengths: { ...lengthsOf(reply.design), value, allow } });
+        changed(reply, {
+          lengths: { ...lengthsOf(reply.design), value, allow },
+          edited: !keepsLengths,
+        });
         showDesign();
       }
     } catch (error) {

@@ -254,21 +254,15 @@ export function wishingPanel(explorer) {
       get(`${path}/requirements`, {}, explorer.signal),
       get(path, {}, explorer.signal),
     ]);
-    const further = [
-      ...Object.keys(ranges).filter((key) => !LENGTHS.includes(key)),
-      ...Object.keys(wished).filter((key) => key.startsWith("choice_")),
-    ];
-    free = [...LENGTHS, ...further];
-    const alike = further.every(
-      (key) =>
-        wished[key] === other[key] ||
-        Math.abs(Number(wished[key]) - Number(other[key])) <= SAME * Math.abs(Number(other[key])),
-    );
-    way = alike
-      ? link(
-          ["jobs", job.id, "designs", near],
-          Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])])),
-        )
+    const further = Object.keys(ranges).filter((key) => !LENGTHS.includes(key));
+    const choices = Object.keys(wished).filter((key) => key.startsWith("choice_"));
+    free = [...LENGTHS, ...further, ...choices];
+    way = choices.every((key) => wished[key] === other[key])
+      ? link(["jobs", job.id, "designs", near], {
+          ...Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])])),
+          value: further.map((key) => `${key}=${wished[key]}`).join(",") || null,
+          as: "Wished",
+        })
       : "";
     beside = other;
   }
@@ -313,7 +307,7 @@ export function wishingPanel(explorer) {
         { class: "row" },
         way
           ? h("a", { class: "button", href: way }, "Open the resulting design")
-          : h("span", { class: "quiet" }, "More than the lengths changed; all values are shown."),
+          : h("span", { class: "quiet" }, "It has another choice; all values are shown."),
         remarks.node,
       ),
       h(

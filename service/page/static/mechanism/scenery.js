@@ -163,6 +163,7 @@ function offset(view, e, x, beside, written) {
       svg(
         "text",
         {
+          class: "dimension",
           transform: `translate(${x + beside} ${room ? (from + to) / 2 : from - 1.5 * tip}) rotate(-90)`,
           "text-anchor": room ? "middle" : tip > 0 ? "start" : "end",
         },
@@ -196,6 +197,7 @@ function strokeOf(view, { crank_mm: r, offset_mm: e }, ends, least, link, swings
       svg(
         "text",
         {
+          class: "dimension stroke",
           x: room ? (from + to) / 2 : beyond,
           y: room ? y + (side > 0 ? 13 : -4) : y + 4,
           "text-anchor": room ? "middle" : beyond > to ? "start" : "end",
@@ -233,7 +235,12 @@ function crankOf(view, r, e, far, link) {
     svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
     svg(
       "text",
-      { x: left, y: edge + (down > 0 ? 10 : -1), "text-anchor": side > 0 ? "start" : "end" },
+      {
+        class: "dimension radius",
+        x: left,
+        y: edge + (down > 0 ? 10 : -1),
+        "text-anchor": side > 0 ? "start" : "end",
+      },
       `crank ${withUnit(r, "mm", 4)}`,
     ),
   );

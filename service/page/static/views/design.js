@@ -111,11 +111,14 @@ export async function show(place, { parts, query, signal }) {
     ].map((name) => [name, h("section", { class: name })]),
   );
   const files = exportMenu(job, number);
+  let called = query.get("as") ?? ""; // how the changed design was made
   /** Show the name of the displayed design, and the decision on it. */
   const rename = () => {
     const { name, bookmark } = changed ?? requirements;
-    const title = capitalised(name);
-    named.textContent = title.startsWith(`Design ${number}`) ? title : `${title} · ${number}`;
+    const title = capitalised(
+      changed && called && !bookmark ? `${called}, near design ${number}` : name,
+    );
+    named.textContent = title.includes(`esign ${number}`) ? title : `${title} · ${number}`;
     undo.hidden = changed === null;
     remarks.show({
       number: bookmark,
@@ -206,6 +209,7 @@ export async function show(place, { parts, query, signal }) {
       over,
       tab,
       ...changedNumbers,
+      as: changedNumbers && called,
       value: changedNumbers?.value?.join(","),
       allow: changedNumbers?.allow?.join(","),
     });
@@ -299,8 +303,9 @@ export async function show(place, { parts, query, signal }) {
     signal,
     start: linked.lengths ?? null,
     wrong: linked.wrong ?? "",
-    /** @param {Api.WhatIf | null} answer @param {{ lengths?: Page.Numbers, impossible?: boolean }} [how] */
-    changed(answer, { lengths, impossible = false } = {}) {
+    /** @param {Api.WhatIf | null} answer @param {{ lengths?: Page.Numbers, impossible?: boolean, edited?: boolean }} [how] */
+    changed(answer, { lengths, impossible = false, edited = false } = {}) {
+      if (edited) called = "";
       changed = answer;
       refused = impossible;
       clearTimeout(later);
@@ -317,7 +322,10 @@ export async function show(place, { parts, query, signal }) {
     columns: main.columns,
     requirements,
     objectives,
-    applied: sliders.apply,
+    applied: (row, allowed) => {
+      called = "Rounded";
+      sliders.apply(row, allowed);
+    },
     signal,
   });
   draw()();
