@@ -95,7 +95,7 @@ def test_applying_one_keeps_the_list_and_the_steps(page: Page, opened: tuple[Pag
         expect(page.get_by_label("Rod, step")).to_have_value("2")
         expect(page.get_by_label("Stroke, allowed deviation")).to_have_value("0.2")
         expect(page).to_have_url(re.compile(f"rod_mm={expected[number - 1]['rod_mm']:g}.*allow=stroke_mm%3D0.2"))
-    page.get_by_role("button", name="Decide for this design").press("Enter")
+    page.get_by_role("button", name="Decide on this design").press("Enter")
     expect(page.get_by_role("dialog")).to_contain_text("within the allowed ±0.2 mm.")
     expect(page.get_by_role("dialog").get_by_role("button", name="Decide", exact=True)).to_be_visible()
     page.get_by_role("dialog").press("Escape")

@@ -74,7 +74,14 @@ export function scenery({
     written && !swings && crankOf(view, r, e, far, link),
     hasStrokeAngles &&
       ends?.every(Number.isFinite) &&
-      strokeAngles(view, linkage, centres, direction, 0.54 * tall * view.unit, 1.7 * link),
+      strokeAngles(
+        view,
+        linkage,
+        centres,
+        direction,
+        { start, end, rail: 0.54 * tall * view.unit },
+        1.7 * link,
+      ),
     bearing(x(0), y(0), link),
   ];
 }
@@ -249,9 +256,16 @@ function crankOf(view, r, e, far, link) {
 /**
  * Draw the crank angles of the outward and the inward stroke, whose ratio is the time ratio at constant speed.
  * @param {View} view @param {Page.Lengths} linkage @param {Centre[]} centres @param {number} direction
- * @param {number} rail distance of the guide from the slider line, pixels @param {number} foot height of the bearing
+ * @param {{ start: number, end: number, rail: number }} guide ends, and distance from the slider line, pixels @param {number} foot height of the bearing
  */
-function strokeAngles(view, { crank_mm: r, offset_mm: e }, [inner, outer], direction, rail, foot) {
+function strokeAngles(
+  view,
+  { crank_mm: r, offset_mm: e },
+  [inner, outer],
+  direction,
+  { start, end, rail },
+  foot,
+) {
   const radius = 0.5 * view.unit * r;
   const shares = e < 0 ? [0.6, 0.7, 0.8, 0.4, 0.3] : [0.4, 0.3, 0.2, 0.6, 0.7]; // beside the dimension of the crank
   if (radius < 24) return null;
@@ -270,7 +284,7 @@ function strokeAngles(view, { crank_mm: r, offset_mm: e }, [inner, outer], direc
       .find(
         ([x, y]) =>
           // off the guide and the hatching of the bearing
-          Math.abs(y - view.y(e)) > rail + 16 &&
+          (Math.abs(y - view.y(e)) > rail + 16 || x < start - 26 || x > end + 26) &&
           (Math.abs(x - view.x(0)) > 1.15 * foot + 24 || Math.abs(y - view.y(0) - foot) > 14),
       );
     return svg(
