@@ -314,5 +314,5 @@ def require_records_of(past: Sequence[Record], identity: Identity | None) -> Non
 _ANEW = "start a new run"
 _OTHERWISE = (
     "a run can only continue where it computes the same results; the search reached a different step ({}) from the "
-    "stored one, perhaps on another kind of processor; {_ANEW}"
+    f"stored one, perhaps on another kind of processor; {_ANEW}"
 )
