@@ -141,7 +141,7 @@ def test_what_cannot_be_is_said_in_a_sentence(page: Page) -> None:
         ("Slider velocity", "Infinity", "“Infinity” is not a valid speed; write a number, in m/s or with its unit."),
         ("Slider position", "100000", "The slider position must be within reach of the open branch"),
         ("Slider position", "1e99", "Slider position must be at most"),
-        ("Slider acceleration", "4", "got acceleration 4 m/s^2 alone"),
+        ("Slider acceleration", "4", "got acceleration 4 m/s² alone"),
     ):
         before = field(page, name).input_value()
         field(page, name).fill(typed)

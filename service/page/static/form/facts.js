@@ -23,7 +23,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
         h("button", { type: "button", onclick: () => apply(change) }, inDisplayUnits(change.label)),
     );
   };
-  const warnings = (understood?.warnings ?? []).map(warning);
+  const warnings = [...(understood?.warnings ?? []), ...(allowed?.said ?? [])].map(warning);
   if (swing) {
     fill(
       place,
@@ -42,7 +42,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
         ),
         row("meets everything", share(swing.feasible_share, swing.example?.feasible), tried(swing)),
       ),
-      notesOf(swing.unchecked, understood, { open }),
+      notesOf(swing.unchecked, understood, open),
     );
     return;
   }
@@ -64,9 +64,10 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       "dl",
       { class: "terms" },
       row("rotates fully", share(allowed.turning_share, Boolean(example)), "of the ranges"),
-      row("strokes", between(allowed.stroke_mm, "mm")),
-      row("time ratios", between(allowed.time_ratio, "")),
-      row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
+      allowed.stroke_mm && row("strokes", between(allowed.stroke_mm, "mm")),
+      allowed.time_ratio && row("time ratios", between(allowed.time_ratio, "")),
+      allowed.transmission_angle_deg &&
+        row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
       row(
         allowed.unchecked.length ? "meets all checked" : "meets everything",
         share(allowed.feasible_share, example?.feasible),
@@ -74,7 +75,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       ),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
-    notesOf(allowed.unchecked, understood, { said: allowed.said.map(warning), open }),
+    notesOf(allowed.unchecked, understood, open),
   );
 }
 
@@ -86,8 +87,8 @@ function row(title, value, note = null) {
   ];
 }
 
-/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {{ said?: HTMLElement[], open?: boolean }} options */
-function notesOf(unchecked, understood, { said = [], open }) {
+/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {boolean | undefined} open */
+function notesOf(unchecked, understood, open) {
   return [
     unchecked.length
       ? h(
@@ -99,7 +100,6 @@ function notesOf(unchecked, understood, { said = [], open }) {
     (understood?.notes ?? []).map((sentence) =>
       h("p", { class: "note" }, `${capitalised(inWords(sentence))}.`),
     ),
-    said,
     understood
       ? h(
           "details",
