@@ -177,8 +177,8 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
     for bookmark in bookmarks_of(store, stored_front.job.id):
         varied = _bookmark_variation(stored_front, _bookmarked_design(stored_front, bookmark))
         head = {
-            "number": bookmark.number,
             "design": bookmark.design,
+            "bookmark": bookmark.number,
             "name": bookmark.name,
             "star": bookmark.star,
             "decided": bookmark.decided,

@@ -99,7 +99,7 @@ export function analyses(
       button.tabIndex = n === chosen ? 0 : -1;
     });
     panel.setAttribute("aria-labelledby", buttons[chosen].id);
-    if (chosen >= fit) others.open = true;
+    others.open ||= chosen >= fit;
   }
 
   async function draw() {

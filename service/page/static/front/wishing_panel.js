@@ -227,6 +227,7 @@ export function wishingPanel(explorer) {
       });
       if (request !== turn) return;
       if (reply.design) await locate(reply.design);
+      if (request !== turn) return; // withdrawn or changed meanwhile
       answered = reply;
       show();
       askBefore();

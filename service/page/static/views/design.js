@@ -305,7 +305,7 @@ export async function show(place, { parts, query, signal }) {
     wrong: linked.wrong ?? "",
     /** @param {Api.WhatIf | null} answer @param {{ lengths?: Page.Numbers, impossible?: boolean, edited?: boolean }} [how] */
     changed(answer, { lengths, impossible = false, edited = false } = {}) {
-      if (edited) called = "";
+      called = edited ? "" : called;
       changed = answer;
       refused = impossible;
       clearTimeout(later);
