@@ -15,6 +15,7 @@ from ...objectives.tables.swing_columns import require_motion
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of_columns
+from .columns import find_column
 from .design_selection_options import minimised_values, target_scales
 from .judged_requirements import deviations_in_words, ranges_as_requirements, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
@@ -68,7 +69,8 @@ def design_with_numbers(
         margin = _SAME * max(abs(item.lower), abs(item.upper))
         if not item.lower - margin <= number <= item.upper + margin:
             ends = f"{item.lower * unit.factor:.6g} to {item.upper * unit.factor:.6g} {unit.symbol}".rstrip()
-            raise InputError(f"{item.name} must be within its range, {ends}; got {value:.6g}; correct it")
+            title = find_column(column, (column,)).title
+            raise InputError(f"{title} must be within its range, {ends}; got {value:.6g}; correct it")
     changed = replace(design, values=(*lengths, *numbers))
     if changed.part.motion is None:
         changed.linkage.require_full_rotation()

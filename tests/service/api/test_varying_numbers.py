@@ -84,13 +84,13 @@ def test_a_rounded_width_is_kept(asked: tuple[httpx.Client, str], rounded: dict[
     assert {key: kept.json()["cells"][key] for key in numbers} == pytest.approx(numbers)
     wrong = client.post(f"{path}/kept", json={"design": DESIGN, "dimensions": {"rod_width_mm": 300.0}})
     assert wrong.status_code == 422
-    assert "mechanism.rod.width must be within its range, 20 to 40 mm; got 300" in wrong.json()["detail"]
+    assert "rod width must be within its range, 20 to 40 mm; got 300" in wrong.json()["detail"]
 
 
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        ("rod_width_mm=300", "mechanism.rod.width must be within its range, 20 to 40 mm; got 300"),
+        ("rod_width_mm=300", "rod width must be within its range, 20 to 40 mm; got 300"),
         ("rod_width_mm", "a value must be COLUMN=NUMBER; got 'rod_width_mm'"),
         ("rod_width_mm=wide", "a value must be COLUMN=NUMBER; got"),
         ("rod_width_mm=nan", "a value must be COLUMN=NUMBER; got"),
