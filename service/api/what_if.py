@@ -167,7 +167,7 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
         )
     stored = design_with_numbers(stored, lengths)
     requested = RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id))
-    allow = request.allow or (requested.bookmark.allowed if requested.bookmark else {})
+    allow = request.allow or dict(requested.bookmark.allowed if requested.bookmark else {})
     stored = replace(stored, allowed=allow)
     changed = judged_variation(stored, stored_front.result, stored_front.minimised_objectives)
     row, undefined = with_undefined_values(

@@ -49,13 +49,13 @@ def cost_of_change(names: Sequence[str], results: Sequence[Result], system: Syst
     """
     shared = [item for item in _shared_objectives(results) if item.target is None] if len(results) == 2 else []
     words: dict[str, list[str]] = {"costs": [], "gains": [], "does not change": []}
-    before, after = (_minimised_shared(result, shared).min(axis=0) for result in results) if shared else ((), ())
-    for objective, old, new in zip(shared, before, after, strict=True):
-        ends = [_with_unit(float(value), objective, system) for value in (old, new)]
+    best = [_minimised_shared(result, shared).min(axis=0).tolist() for result in results] if shared else [[], []]
+    for objective, old, new in zip(shared, *best, strict=True):
+        ends = [_with_unit(value, objective, system) for value in (old, new)]
         if not np.isfinite([old, new]).all():
             return []
         is_same = ends[0] == ends[1] or abs(new - old) <= _SAME * max(abs(old), abs(new))
-        amount = "" if is_same else f"{_with_unit(abs(float(new - old)), objective, system)} of "
+        amount = "" if is_same else f"{_with_unit(abs(new - old), objective, system)} of "
         words["does not change" if is_same else "costs" if new > old else "gains"].append(f"{amount}{objective.title}")
     clauses = [f"{verb} {' and '.join(items)}" for verb, items in words.items() if items]
     return [f"at best, {names[1]} instead of {names[0]} {', '.join(clauses)}"] if clauses else []

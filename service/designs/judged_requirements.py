@@ -159,9 +159,10 @@ def deviations_in_words(rules: Iterable[Requirement], row: Row, system: System =
     """Describe deviations within what is allowed: "stroke 180.008 mm, within the allowed ±0.05 mm"."""
     texts = []
     for rule in rules:
-        if rule.deviation(row) and rule.missed_by(row) == 0.0:
+        value = _number_or_none(row.get(rule.column))
+        if value is not None and rule.deviation(row) and rule.missed_by(row) == 0.0:
             unit, factor = metric_unit_in(rule.unit, system)
-            value, allowed = float(row[rule.column]) * factor, rule.allowed * factor
+            value, allowed = value * factor, rule.allowed * factor
             digits = min(12, max(6, math.ceil(math.log10(abs(value / allowed))) + 2)) if value else 6
             sign = "±" if rule.lower == rule.upper else ""
             numbers = [f"{format_number(number, digits)} {unit_text(unit)}".rstrip() for number in (value, allowed)]
