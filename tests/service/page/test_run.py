@@ -74,7 +74,7 @@ def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Sto
     expect(page.get_by_text("Waiting for a worker. Every worker is busy (1).")).to_be_hidden(timeout=5_000)
     claim_waiting_job(store)
     expect(page.get_by_text("Waiting for a worker.")).to_be_hidden(timeout=2_000)
-    expect(page.get_by_text("The front appears after the first round.")).to_be_visible()
+    expect(page.get_by_text("The front appears with the first finished designs.")).to_be_visible()
 
 
 def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:

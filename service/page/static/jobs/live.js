@@ -324,7 +324,7 @@ export function showProgress(place, job, { signal, changed }) {
           ? `Waiting for a worker. ${now.reason && `${capitalised(inWords(now.reason))}.`}`
           : now.progress?.round
             ? "No finished design yet."
-            : "The front appears after the first round.",
+            : "The front appears with the first finished designs.",
       ),
     );
     if (waits) soon(AGAIN); // the reason for waiting changes without an event
