@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import choose_designs, hypervolume, ideal_and_range
+from slidercrank.optimise.front.hypervolume import choose_designs_by_hypervolume, hypervolume, ideal_and_range
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.registry import methods_by_name as known
@@ -114,7 +114,7 @@ def _peer(
 
     def measure(values: Array) -> float:
         values = values[nondominated(values)]
-        return hypervolume(values[choose_designs(values, problem.settings.designs)], ideal, span) / whole
+        return hypervolume(values[choose_designs_by_hypervolume(values, problem.settings.designs)], ideal, span) / whole
 
     watch = _Watch(measure, ideal + 100.0 * span)
     run_peer(title, problem, span, watch.note, seed=problem.settings.seed, evaluations=evaluations)

@@ -22,7 +22,7 @@ from slidercrank.service.drawings.linkage_shapes import (
     moving_shapes,
     pin_positions,
 )
-from slidercrank.service.figures.shape_painting import paint_shapes, show_rectangle
+from slidercrank.service.figures.shape_painting import paint_shapes, set_axes_to_rectangle
 from slidercrank.service.figures.style import (
     INK,
     TEXT,
@@ -131,5 +131,5 @@ def _stage(figure: Figure, looks: list[LinkageSizes]) -> Axes:
     right, high = extents[:, 2:].max(axis=0)
     margin = 0.04 * (right - left)
     axes = add_axes(figure, 4.45, 0.65, _WIDTH - 4.5, _HEIGHT - 0.7)
-    show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
+    set_axes_to_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     return axes

@@ -46,7 +46,7 @@ class Reduced(PymooProblem):  # type: ignore[misc]
         )
 
     def _evaluate(self, x: Array, out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
-        _, objectives, violation = self.evaluator.screen(x)
+        _, objectives, violation = self.evaluator.screen_designs_objectives_violation(x)
         begin = process_time()
         self.seen.append(objectives[violation <= FEASIBLE])
         self.keeping += process_time() - begin

@@ -18,7 +18,7 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.sample_and_zoom import explore
+from slidercrank.optimise.search.sample_and_zoom import sample_and_zoom
 from slidercrank.optimise.solve import solve
 
 from .machines import Array
@@ -54,7 +54,7 @@ def _explored(problem: Problem) -> list[tuple[float, Array]]:
         times = []
         for _ in range(3):
             begin = process_time()
-            archive = explore(sized, [Evaluator(sized, branch) for branch in elimination_branches(sized)])
+            archive = sample_and_zoom(sized, [Evaluator(sized, branch) for branch in elimination_branches(sized)])
             times.append(process_time() - begin)
         found.append((min(times), archive.values[archive.is_feasible]))
     return found

@@ -120,12 +120,12 @@ def warn_user(sentence: str, *, through_callers: bool = False) -> None:
         warnings.warn(sentence, InputWarning, stacklevel=level)
 
 
-def reading_in_both_units(name: str, number: float, unit: str, usual: str, factor: float) -> str:
+def number_in_si_and_usual_unit(name: str, number: float, unit: str, usual: str, factor: float) -> str:
     """Return a number as read in SI, and as probably meant in a usual unit.
 
     unit: SI unit. usual: usual unit for such values. factor: one SI unit in the usual unit.
 
-    >>> reading_in_both_units("crank", 40.0, "m", "mm", 1e3)
+    >>> number_in_si_and_usual_unit("crank", 40.0, "m", "mm", 1e3)
     'crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm'
     """
     return (

@@ -19,7 +19,7 @@ from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import CLASSES, LABEL_STEP, stress_peaks
 from ..model.strength.stress_locations import Eye, StressLocation
-from .quantity import Array, Formula, Group, Pieces, Quantity, Values, display_fact, undefined_values
+from .quantity import Array, Formula, Group, Pieces, Quantity, Values, display_only_field, undefined_values
 
 
 class Link(NamedTuple):
@@ -59,10 +59,10 @@ class BarPieces(NamedTuple):
     gradients: Array | None
     labels: Array
 
-    def times(self, factor: tuple[Array, Array | None]) -> BarPieces:
+    def multiplied_by(self, factor: tuple[Array, Array | None]) -> BarPieces:
         """Return the pieces multiplied by a positive closed form (n,) with its gradients."""
         values, slopes = factor
-        return self._with_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
+        return self._with_chained_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
 
     def closed_form_divided_by_pieces(self, factor: tuple[Array, Array | None]) -> BarPieces:
         """Return a closed form (n,) divided by the pieces, highest piece first.
@@ -76,10 +76,10 @@ class BarPieces(NamedTuple):
         counts[:, 1:] &= values[:, None] > 0.0
         inverse = np.where(counts, 1.0 / np.where(counts, self.values, 1.0), 0.0)
         quotients = np.where(counts, values[:, None] * inverse, np.inf)
-        part = self._with_slopes(quotients, -values[:, None] * inverse**2, slopes, inverse)
+        part = self._with_chained_slopes(quotients, -values[:, None] * inverse**2, slopes, inverse)
         return part
 
-    def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> BarPieces:
+    def _with_chained_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> BarPieces:
         """Return values with gradients, from `outer` derivatives for the pieces and `inner` ones for the factor."""
         if self.gradients is None or slopes is None:
             return BarPieces(values, None, self.labels)
@@ -93,8 +93,8 @@ class BarPieces(NamedTuple):
 class BarQuantity(Quantity):
     """A quantity that is the maximum or minimum over several parts of the crank and the rod."""
 
-    group: Group = display_fact(Group.STRENGTH)
-    section: str = display_fact("22. Strength of crank and rod")
+    group: Group = display_only_field(Group.STRENGTH)
+    section: str = display_only_field("22. Strength of crank and rod")
     links: tuple[str, ...] = ("rod", "crank")
     least: bool = False
 
@@ -103,10 +103,12 @@ class BarQuantity(Quantity):
         return 1.0
 
     @abstractmethod
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
+    def pieces_by_part(
+        self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
+    ) -> Sequence[BarPieces]:
         """Return the parts that count for designs (n, 3 + k). piece_count: number of pieces per part."""
 
-    def bars(self, mechanism: Mechanism) -> list[str]:
+    def links_with_bars(self, mechanism: Mechanism) -> list[str]:
         """Return those of its links that have a bar section."""
         return [name for name in self.links if isinstance(getattr(mechanism, name), Bar)]
 
@@ -128,11 +130,11 @@ class BarQuantity(Quantity):
         all_parts = self.join_parts(mechanism, dimensions, STORED_PEAKS, True)
         assert all_parts.gradients is not None
         order = np.argsort(all_parts.values if self.least else -all_parts.values, axis=1, kind="stable")
-        return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).take(order)
+        return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).select_pieces(order)
 
     def join_parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> BarPieces:
         """Return all parts side by side, with labels that distinguish them; see `parts`."""
-        parts = self.parts(mechanism, designs, piece_count, gradients)
+        parts = self.pieces_by_part(mechanism, designs, piece_count, gradients)
         return BarPieces(
             np.concatenate([part.values for part in parts], axis=1),
             np.concatenate([part.gradients for part in parts if part.gradients is not None], axis=1)
@@ -170,7 +172,9 @@ class BarPeak(BarQuantity):
         """Return the stress locations that one search covers."""
         return tuple(demand.peak for demand in self.section_loads(mechanism) if not isinstance(demand.peak, str))
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
+    def pieces_by_part(
+        self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
+    ) -> Sequence[BarPieces]:
         """Return a part for each demand; see `BarQuantity`."""
         locations = self.stress_locations(mechanism)
         found: dict[StressLocation | str, BarPieces] = {}
@@ -257,7 +261,7 @@ def pieces_of_force_over_area(force: BarPieces, area: tuple[Array, Array | None]
     has_area = values > 0.0
     safe = np.where(has_area, values, 1.0)
     inverse = factor / safe
-    stress = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
+    stress = force.multiplied_by((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
     filled = np.where(has_area[:, None] | ~np.isfinite(stress.values), stress.values, np.inf)
     gradients = None if stress.gradients is None else np.where(has_area[:, None, None], stress.gradients, 0.0)
     return BarPieces(filled, gradients, stress.labels)

@@ -29,12 +29,12 @@ class LengthRanges:
     a1: float
 
     @property
-    def turns(self) -> bool:
+    def rotates_fully_throughout(self) -> bool:
         """Whether the corner closest to locking rotates fully."""
         return (self.r1 + self.a1) * CLEAR < self.l0
 
     @property
-    def crank(self) -> float:
+    def longest_rotating_crank(self) -> float:
         """The longest crank that still rotates fully, m."""
         return min(self.r1, self.l1 - self.a0)
 

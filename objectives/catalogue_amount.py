@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model.errors import InputError
 from ..model.machine.mechanism import Mechanism
-from .kinds import RATIO, Kind, amount_kind, kind_in
+from .kinds import RATIO, Kind, amount_kind, kind_displayed_in
 from .quantity import Array, Quantity, Values
 from .units import kind_of_any_unit, number_and_unit, value_of_one_si_unit_in
 
@@ -25,7 +25,7 @@ class Amount(Quantity):
     turning: bool = field(default=False, compare=False)
 
     @property
-    def constant(self) -> bool:
+    def is_constant(self) -> bool:
         """True."""
         return True
 
@@ -50,7 +50,7 @@ def substitute_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity
 def kind_of_amount(unit: str) -> Kind:
     """Return the kind for amounts in a unit: the kind of a known unit, else a new kind."""
     try:
-        return kind_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit)) if unit else RATIO
+        return kind_displayed_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit)) if unit else RATIO
     except InputError:
         return amount_kind(unit)
 

@@ -12,7 +12,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers, require_design_columns
 from .bounds_over_ranges import QuantityBounds
-from .quantity import Array, Formula, Number, Pieces, Quantity, Values, display_fact, undefined_values
+from .quantity import Array, Formula, Number, Pieces, Quantity, Values, display_only_field, undefined_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,8 +23,8 @@ class ClosedFormQuantity(Quantity):
     designs.
     """
 
-    section: str = display_fact("2. Closed forms")
-    on_datasheet: bool = display_fact(True)
+    section: str = display_only_field("2. Closed forms")
+    on_datasheet: bool = display_only_field(True)
     forms: tuple[ClosedForm, ...]
     rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 

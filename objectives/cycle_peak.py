@@ -11,12 +11,12 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import raw_number_at_slot
 from ..model.signals.averages import signal_averages
-from ..model.signals.fast_torque_and_error import ANGLES, is_supported, screened_maxima
+from ..model.signals.fast_torque_and_error import ANGLES, screened_maxima, supports_screening
 from ..model.signals.peaks import find_peaks
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signal_inputs import has_load_change_at_dead_centres
 from ..model.signals.signals import Signal
-from .quantity import Array, Pieces, Quantity, Values, display_fact
+from .quantity import Array, Pieces, Quantity, Values, display_only_field
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ def screen_quantities(
     certain: whether a torque whose peak may be at a kink is left out, as NaN.
     """
     peaks = (item for item in quantities if isinstance(item, CyclePeak))
-    quick = {peak.name: peak.signal for peak in peaks if is_supported(mechanism, peak.signal, during=peak.during)}
+    quick = {peak.name: peak.signal for peak in peaks if supports_screening(mechanism, peak.signal, during=peak.during)}
     if not quick:
         return {}
     kinks = certain and Signal.TORQUE in quick.values() and has_load_change_at_dead_centres(mechanism)
@@ -98,7 +98,7 @@ class CycleAverage(Quantity):
     gives the mean power over time.
     """
 
-    section: str = display_fact("10. Motor and balance")
+    section: str = display_only_field("10. Motor and balance")
     signal: Signal
     statistic: Statistic
     times_speed: bool = False

@@ -103,7 +103,7 @@ def _dwell_angle(machine: Mechanism, number: Number) -> Any:
     return 2.0 * _crank_angle_from_pin_line(machine, number, machine.slider.dwell or 0.0)
 
 
-def _need_distance(name: str) -> Need:
+def _need_of_slider_distance(name: str) -> Need:
     return Need(
         lambda machine: getattr(machine.slider, name) is not None,
         f"it needs a {name} distance of the slider; got none; for example, add "
@@ -125,7 +125,7 @@ TOUCH_SPEED = NearDeadCentre(
     section="2. Closed forms",
     picture="speed",
     example="0.3 m/s",
-    needs=(TURNS, _need_distance("touch"), EVEN_SPEED),
+    needs=(TURNS, _need_of_slider_distance("touch"), EVEN_SPEED),
 )
 DWELL_ANGLE = NearDeadCentre(
     name="dwell_angle",
@@ -143,5 +143,5 @@ DWELL_ANGLE = NearDeadCentre(
     picture=STROKE.picture,
     example="30 deg",
     better="high",
-    needs=(_need_distance("dwell"),),
+    needs=(_need_of_slider_distance("dwell"),),
 )

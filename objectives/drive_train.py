@@ -16,7 +16,7 @@ from ..model.signals.shaft_statistics import greatest_speed_ratio
 from .closed_form import GreatestOfFormulas
 from .kinds import ANGULAR_SPEED, ENERGY, POWER, RATIO, TORQUE
 from .machine_needs import DRIVE_TRAIN, MOTOR_LOADED, SPEED, need_of_motor_limit
-from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, display_fact, undefined_values
+from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, display_only_field, undefined_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +26,8 @@ class MotorQuantity(Quantity):
     limit: key of its limit in [drive]. share: whether the quantity is the load divided by the limit.
     """
 
-    group: Group = display_fact(Group.DRIVE)
-    section: str = display_fact("10. Motor and balance")
+    group: Group = display_only_field(Group.DRIVE)
+    section: str = display_only_field("10. Motor and balance")
     limit: str = ""
     share: bool = False
 
@@ -36,11 +36,13 @@ class MotorQuantity(Quantity):
         limit = None if mechanism.drive is None else getattr(mechanism.drive, self.limit)
         return math.inf if limit is None else float(limit)
 
-    def scale(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool) -> tuple[Array, Array | None]:
+    def load_factor_and_gradients(
+        self, mechanism: Mechanism, dimensions: Array, *, gradients: bool
+    ) -> tuple[Array, Array | None]:
         """Return the factor (n,) that converts the load to the quantity, and its derivatives (n, 3 + k)."""
-        return evaluate_formula_of_raw_numbers(mechanism, dimensions, self.factor, gradients=gradients)
+        return evaluate_formula_of_raw_numbers(mechanism, dimensions, self.load_factor, gradients=gradients)
 
-    def factor(self, number: Number) -> float:
+    def load_factor(self, number: Number) -> float:
         """Return the factor that converts the load to the quantity: real, complex, or an enclosure."""
         scale: float = 1.0 / number(DRIVE[self.limit]) if self.share else 1.0
         return scale
@@ -72,7 +74,7 @@ class MotorPeak(MotorQuantity):
     ) -> tuple[Array, Array | None, Array]:
         """Return values, derivatives and crank angles for the highest local peaks."""
         peaks = motor_peaks(mechanism, dimensions, self.curve, gradients, count)
-        scale, by_scale = self.scale(mechanism, dimensions, gradients=gradients)
+        scale, by_scale = self.load_factor_and_gradients(mechanism, dimensions, gradients=gradients)
         slopes = None
         if peaks.gradients is not None and by_scale is not None:
             finite = np.where(np.isfinite(peaks.values), peaks.values, 0.0)
@@ -89,7 +91,7 @@ class MotorRms(MotorQuantity):
         if self.unmet_need(mechanism, "undefined"):
             return undefined_values(dimensions, gradients)
         averages = motor_averages(mechanism, dimensions, MotorCurve.TORQUE, gradients)
-        scale, by_scale = self.scale(mechanism, dimensions, gradients=gradients)
+        scale, by_scale = self.load_factor_and_gradients(mechanism, dimensions, gradients=gradients)
         slopes = None
         if averages.rms_gradients is not None and by_scale is not None:
             finite = np.where(np.isfinite(averages.rms), averages.rms, 0.0)
@@ -104,7 +106,7 @@ class MotorSpeed(MotorQuantity, GreatestOfFormulas):
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the gear ratio times the crank speed, at the maximum of the speed profile."""
         greatest = mechanism.direction * greatest_speed_ratio(mechanism)
-        return (lambda number: greatest * number(DRIVE["gear_ratio"]) * number(Raw.SPEED) * self.factor(number),)
+        return (lambda number: greatest * number(DRIVE["gear_ratio"]) * number(Raw.SPEED) * self.load_factor(number),)
 
 
 class EnergyDrawn(MotorQuantity):

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from ..model.machine.cylinder_machines import cycle_turns
+from ..model.machine.cylinders_as_machines import cycle_turns
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
-from ..model.machine.work_absorption import with_loads_alone
+from ..model.machine.work_absorption import without_masses_and_friction
 from ..model.signals.averages import torque_averages
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .kinds import ENERGY, RATIO
@@ -58,7 +58,7 @@ def _useful_work(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[
     """
     if not any(load.on_crank for load in mechanism.loads):
         return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]
-    alone, factor = with_loads_alone(mechanism), _TURN * mechanism.direction
+    alone, factor = without_masses_and_friction(mechanism), _TURN * mechanism.direction
     averages = torque_averages(alone, designs, gradients=work.gradients is not None)
     return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 
@@ -160,7 +160,7 @@ EFFICIENCY = Efficiency(
     picture="torque",
     example=0.9,
     better="high",
-    domain=Domain.share("an efficiency", "0.7 to 0.95"),
+    domain=Domain.of_fraction("an efficiency", "0.7 to 0.95"),
     needs=(LOAD_WORK, *LOSSES),
 )
 ENERGY_PER_CYCLE = EnergyPerCycle(

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..model.cycle.gas_work import GasCycle, cylinder_loads, gas_cycle_number
+from ..model.cycle.gas_work import GasCycle, cylinder_loads, evaluate_on_gas_cycle
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
-from ..model.machine.cylinder_machines import cylinder_count
+from ..model.machine.cylinders_as_machines import cylinder_count
 from ..model.machine.loads.compressor import Compressor
 from ..model.machine.loads.crank_torque import CrankTorque
 from ..model.machine.loads.cylinder import Cylinder
@@ -41,7 +41,7 @@ class GasQuantity(Quantity):
         """Return the quantity for designs (n, 3 + k); NaN if there is no suitable cylinder; see `Quantity`."""
         if self.unmet_need(mechanism, "undefined"):
             return undefined_values(dimensions, gradients)
-        return Values(*gas_cycle_number(mechanism, dimensions, self.closed_form, gradients=gradients))
+        return Values(*evaluate_on_gas_cycle(mechanism, dimensions, self.closed_form, gradients=gradients))
 
 
 _gas = partial(GasQuantity, group=Group.DRIVE, section="7. Loads", picture="cylinder", needs=(CYLINDER,))
@@ -116,7 +116,7 @@ VOLUMETRIC_EFFICIENCY = _gas(
     formula="1 - (V_c / (A S)) ((p_h / p_l)^(1/n_e) - 1); 1 for a liquid",
     example=0.8,
     better="high",
-    domain=Domain.share("the volumetric efficiency", "0.6 to 0.9"),
+    domain=Domain.of_fraction("the volumetric efficiency", "0.6 to 0.9"),
     floor=0.05,  # near zero, nothing is delivered
     needs=(COMPRESSOR,),
 )
@@ -139,8 +139,8 @@ class Flow(Quantity):
         rate = evaluate_formula_of_raw_numbers(
             mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients
         )
-        volume = gas_cycle_number(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
-        return Values(*volume).times(Values(*rate))
+        volume = evaluate_on_gas_cycle(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
+        return Values(*volume).multiplied_by(Values(*rate))
 
 
 class FlowRipple(Quantity):

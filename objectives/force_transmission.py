@@ -21,7 +21,7 @@ from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 
 
 def _transmission_angle_bounds(box: LengthRanges) -> tuple[float, float]:
-    flattest = geometry.least_transmission_angle(box.r1, box.l0, box.a1) if box.turns else 0.0
+    flattest = geometry.least_transmission_angle(box.r1, box.l0, box.a1) if box.rotates_fully_throughout else 0.0
     return float(flattest), float(geometry.least_transmission_angle(box.r0, box.l1, box.a0))
 
 
@@ -113,7 +113,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     picture="slider pin force",
     example=0.5,
     better="high",
-    domain=Domain.share("force transmission", "0.5 to 0.9"),
+    domain=Domain.of_fraction("force transmission", "0.5 to 0.9"),
     needs=(
         Need(
             _slider_needs_force,

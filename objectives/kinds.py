@@ -66,7 +66,7 @@ class Kind:
     amount: bool = False
 
     @property
-    def si(self) -> DisplayUnit:
+    def si_display_unit(self) -> DisplayUnit:
         """The SI unit as a display unit."""
         return display_unit_of_quotient(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
@@ -79,7 +79,7 @@ class Kind:
         return self.metric if system == "metric" or self.inch is None else self.inch
 
     @property
-    def plain(self) -> str:
+    def name_without_article(self) -> str:
         """The name without its article: "length"."""
         return self.name.split(" ", 1)[-1]
 
@@ -216,7 +216,7 @@ def amount_kind(unit: str) -> Kind:
     return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, display_unit(unit), typed=(unit,), amount=True)
 
 
-def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
+def kind_displayed_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
     """Return the kind for a value displayed in any unit; the suffix derives from the unit's symbol.
 
     factor: value of one SI unit in it. kind: kind from the table if there is one, else a kind named after the unit.
@@ -263,12 +263,12 @@ def name_unit_and_factor_of_key(key: str) -> tuple[str, str, float]:
     return (key, "", 1.0) if unit is None else (key.removesuffix(unit.suffix), unit.symbol, unit.factor)
 
 
-def kind_of_key(key: str) -> tuple[str, Kind]:
+def name_and_kind_of_key(key: str) -> tuple[str, Kind]:
     """Return name and kind of a metric key; without a unit, the kind is a ratio."""
     unit = _display_unit_of(key)
     if unit is None:
         return key, RATIO
-    return key.removesuffix(unit.suffix), _KINDS.get(unit.suffix) or kind_in(unit.symbol, unit.factor)
+    return key.removesuffix(unit.suffix), _KINDS.get(unit.suffix) or kind_displayed_in(unit.symbol, unit.factor)
 
 
 def column_key_in_system(key: str, system: System) -> tuple[str, float]:

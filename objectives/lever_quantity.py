@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..model.kernel.arithmetic import STEP
-from ..model.kernel.batches import in_chunks
+from ..model.kernel.batches import run_in_chunks
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.memoise import memoise_by_batch
 from ..model.swing.swing import Swing
@@ -41,15 +41,15 @@ class LeverQuantity(SwingQuantity):
     smooth_at_zero_offset: bool = field(default=True, compare=False)
 
     @property
-    def required(self) -> str:
+    def job_requirements_text(self) -> str:
         """Requirements on a job, in words; see `Quantity`."""
         if "turning crank" not in self.moved_by:
-            return super().required
+            return super().job_requirements_text
         turning = "" if "cylinder" in self.moved_by else ", and no table [motion]"
         needs = (need.rule for need in self.needs)
         return "; ".join([f'it needs [mechanism] inversion = "turning cylinder"{turning}', *needs])
 
-    def unfit(self, swing: Swing) -> str | None:
+    def unfit_swing_reason(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if not swing.of_lever:
             return (
@@ -81,7 +81,7 @@ class LeverQuantity(SwingQuantity):
                 return None if stated else 'it needs tolerances; got none; for example, add [tolerances] crank = "1 mm"'
         return Quantity.unmet_need(self, mechanism, consequence)
 
-    def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
+    def _designs_and_movable_rows(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
         return designs, np.flatnonzero(can_make_motion(mechanism, self._required_swing, designs))
 
@@ -102,17 +102,17 @@ class LeverPeak(LeverQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        pieces = self._pieces(mechanism, dimensions, gradients, 1)
+        pieces = self._peak_pieces(mechanism, dimensions, gradients, 1)
         best = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
         rows = np.arange(len(best))
         return Values(pieces.values[rows, best], pieces.gradients[rows, best] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""
-        return self._pieces(mechanism, dimensions, True, _PEAKS)
+        return self._peak_pieces(mechanism, dimensions, True, _PEAKS)
 
-    def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool, limit: int) -> Pieces:
-        designs, rows = self._passing(mechanism, dimensions)
+    def _peak_pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool, limit: int) -> Pieces:
+        designs, rows = self._designs_and_movable_rows(mechanism, dimensions)
         arguments = self._required_swing, self.curves, limit
         peaks = _peaks_of_designs(mechanism, np.ascontiguousarray(designs[rows]), *arguments, gradients=gradients)
         found, slope = self._divided(mechanism, designs[rows], peaks)
@@ -133,7 +133,7 @@ class LeverPeak(LeverQuantity):
         values[rows, :width] = found
         if gradients:
             _, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=True)
-            slopes[rows, :width] = numbers.chain_to_designs(slope)
+            slopes[rows, :width] = numbers.gradients_by_design_numbers(slope)
         return Pieces(values, slopes, labels, least=self.inverse)
 
     def _divided(self, mechanism: Mechanism, designs: Array, peaks: LeverPeaks) -> tuple[Array, Array]:
@@ -165,7 +165,7 @@ def _peaks_of_designs(
         part = lever_peaks(batch.levers_between(begin, end), curves, gradients=gradients, limit=limit)
         values[begin:end], places[begin:end], slopes[begin:end] = part.values, part.places, part.gradients
 
-    in_chunks(len(designs), work, size=_CHUNK)
+    run_in_chunks(len(designs), work, size=_CHUNK)
     return LeverPeaks(values, places, slopes)
 
 
@@ -183,29 +183,29 @@ class LeverForm(LeverQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        pieces = self._pieces(mechanism, dimensions, gradients)
+        pieces = self._form_pieces(mechanism, dimensions, gradients)
         best = (np.argmin if self.least else np.argmax)(pieces.values, axis=1)
         rows = np.arange(len(best))
         return Values(pieces.values[rows, best], pieces.gradients[rows, best] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return its forms; see `Quantity`."""
-        return self._pieces(mechanism, dimensions, True)
+        return self._form_pieces(mechanism, dimensions, True)
 
-    def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool) -> Pieces:
-        designs, rows = self._passing(mechanism, dimensions)
+    def _form_pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool) -> Pieces:
+        designs, rows = self._designs_and_movable_rows(mechanism, dimensions)
         batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
         count = len(self.forms)
         values = np.full((len(designs), count), np.nan)
         slopes = np.zeros((*values.shape, designs.shape[1] if gradients else 0))
-        values[rows] = self._of(batch.plain).real
+        values[rows] = self._evaluate_forms(batch.plain).real
         if gradients:
-            by_number = [self._of(stepped).imag / STEP for stepped in batch.stepped]
-            slopes[rows] = numbers.chain_to_designs(np.stack(by_number, axis=-1))
+            by_number = [self._evaluate_forms(stepped).imag / STEP for stepped in batch.stepped]
+            slopes[rows] = numbers.gradients_by_design_numbers(np.stack(by_number, axis=-1))
         labels = np.broadcast_to(np.arange(float(count)), values.shape)
         return Pieces(values, slopes, labels, least=self.least)
 
-    def _of(self, numbers: LeverNumbers) -> Any:
+    def _evaluate_forms(self, numbers: LeverNumbers) -> Any:
         top = self._required_swing.greatest_travel_rate
         return np.stack([form(numbers, top) + 0j * numbers.crank for form in self.forms], axis=1)
 
@@ -216,7 +216,7 @@ class LeverRms(LeverQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        designs, rows = self._passing(mechanism, dimensions)
+        designs, rows = self._designs_and_movable_rows(mechanism, dimensions)
         batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
         values, slopes = np.full(len(designs), np.nan), np.zeros(designs.shape)
         by_number = np.zeros((len(rows), len(numbers.columns) if gradients else 0))
@@ -225,8 +225,8 @@ class LeverRms(LeverQuantity):
             levers = batch.levers_between(begin, end)
             values[rows[begin:end]], by_number[begin:end] = rms_torque(levers, gradients=gradients)
 
-        in_chunks(len(rows), work, size=_CHUNK)
+        run_in_chunks(len(rows), work, size=_CHUNK)
         if not gradients:
             return Values(values, None)
-        slopes[rows] = numbers.chain_to_designs(by_number)
+        slopes[rows] = numbers.gradients_by_design_numbers(by_number)
         return Values(values, slopes)

@@ -88,12 +88,12 @@ MOVING_MASS = _mass(
 )
 
 
-def _per_rotor_inertia(number: Number) -> Any:
+def _inverse_of_reflected_rotor_inertia(number: Number) -> Any:
     return 1.0 / (number(DRIVE["gear_ratio"]) ** 2 * number(DRIVE["motor_inertia"]))
 
 
 def _flywheel_inertia_ratio(number: Number) -> Any:
-    return number(DRIVE["flywheel"]) * _per_rotor_inertia(number)
+    return number(DRIVE["flywheel"]) * _inverse_of_reflected_rotor_inertia(number)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,10 +111,10 @@ class InertiaRatio(Quantity):
             return undefined_values(dimensions, gradients)
         if self.mean:
             averages = signal_averages(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients)
-            return self._ratio(mechanism, dimensions, averages.mean, averages.mean_gradients)
+            return self._ratio_from_inertia(mechanism, dimensions, averages.mean, averages.mean_gradients)
         peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients, limit=1)
         slopes = None if peaks.gradients is None else peaks.gradients[:, 0]
-        return self._ratio(mechanism, dimensions, peaks.values[:, 0], slopes)
+        return self._ratio_from_inertia(mechanism, dimensions, peaks.values[:, 0], slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the ratios for the highest local peaks of the inertia; see `Quantity`."""
@@ -125,17 +125,19 @@ class InertiaRatio(Quantity):
         values, slopes = np.full_like(peaks.values, -np.inf), np.zeros_like(peaks.gradients)
         for place in range(values.shape[1]):
             rows = np.flatnonzero(np.isfinite(peaks.values[:, place]))
-            ratio = self._ratio(mechanism, dimensions[rows], peaks.values[rows, place], peaks.gradients[rows, place])
+            ratio = self._ratio_from_inertia(
+                mechanism, dimensions[rows], peaks.values[rows, place], peaks.gradients[rows, place]
+            )
             assert ratio.gradients is not None
             values[rows, place], slopes[rows, place] = ratio.values, ratio.gradients
         return Pieces(values, slopes, peaks.angles)
 
-    def _ratio(self, mechanism: Mechanism, designs: Array, inertia: Array, slopes: Array | None) -> Values:
+    def _ratio_from_inertia(self, mechanism: Mechanism, designs: Array, inertia: Array, slopes: Array | None) -> Values:
         scale, flywheel = (
             Values(*evaluate_formula_of_raw_numbers(mechanism, designs, formula, gradients=slopes is not None))
-            for formula in (_per_rotor_inertia, _flywheel_inertia_ratio)
+            for formula in (_inverse_of_reflected_rotor_inertia, _flywheel_inertia_ratio)
         )
-        linkage = Values(inertia, slopes).times(scale)
+        linkage = Values(inertia, slopes).multiplied_by(scale)
         if linkage.gradients is None or flywheel.gradients is None:
             return Values(linkage.values + flywheel.values, None)
         return Values(linkage.values + flywheel.values, linkage.gradients + flywheel.gradients)

@@ -39,7 +39,7 @@ class LinkStress(BarPeak):
 
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the stress along bars and in the pivot's eye, and the force on all eyes; see `BarPeak`."""
-        strength, bars = material_and_pins(mechanism), self.bars(mechanism)
+        strength, bars = material_and_pins(mechanism), self.links_with_bars(mechanism)
         limit = strength.material.yield_strength if self.least else 1.0
         raised = strength.eye_concentration
         pivot = CRANK, LINKS[CRANK].far
@@ -67,7 +67,7 @@ def greatest_eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict
     stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
     quantity = replace(ROD_STRESS, links=tuple(LINKS))
     for demand, part in zip(
-        quantity.section_loads(mechanism), quantity.parts(mechanism, design, 1, False), strict=True
+        quantity.section_loads(mechanism), quantity.pieces_by_part(mechanism, design, 1, False), strict=True
     ):
         if demand.eye is None:
             continue
@@ -96,7 +96,7 @@ def _angle_of_greatest_stress(mechanism: Mechanism, place: StressLocation, desig
 
 def _links_and_locations(mechanism: Mechanism) -> list[tuple[str, StressLocation]]:
     """Return links and locations with stress over a whole section: along the bars, and in the eye at the pivot."""
-    bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
+    bars, pivot = STATIC_SAFETY.links_with_bars(mechanism), LINKS[CRANK].far
     bodies: list[tuple[str, StressLocation]] = [(name, LinkBody(LINKS[name].part)) for name in bars]
     return bodies + [(CRANK, eye) for eye in (critical_eye_edges(CRANK, pivot) if CRANK in bars else [])]
 
@@ -112,7 +112,7 @@ class FatigueSafety(BarPeak):
 
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the stress in each bar and in each eye; see `BarPeak`."""
-        bars = self.bars(mechanism)
+        bars = self.links_with_bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in critical_eye_edges(name, pin)]
         bodies = [SectionLoad(LinkBody(LINKS[name].part), None) for name in bars]
         return [*bodies, *(SectionLoad(eye, net_width_formula(eye)) for eye in eyes)]
@@ -127,7 +127,7 @@ class BucklingSafety(BarPeak):
 
     def stress_locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return each bar as a location, which both planes share."""
-        return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.bars(mechanism))
+        return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.links_with_bars(mechanism))
 
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the compression of each bar for buckling in the plane of motion and out of it; see `BarPeak`."""
@@ -135,14 +135,18 @@ class BucklingSafety(BarPeak):
         return [
             SectionLoad(
                 LinkBody(own.part, bent=False),
-                critical_stress(own.length, side, own.end_condition, material.elasticity, material.yield_strength),
+                critical_stress_formula(
+                    own.length, side, own.end_condition, material.elasticity, material.yield_strength
+                ),
             )
-            for own in (LINKS[name] for name in self.bars(mechanism))
+            for own in (LINKS[name] for name in self.links_with_bars(mechanism))
             for side in (own.width, own.depth)
         ]
 
 
-def critical_stress(length: int, side: int, end_condition: float, elasticity: float, strength: float) -> Formula:
+def critical_stress_formula(
+    length: int, side: int, end_condition: float, elasticity: float, strength: float
+) -> Formula:
     """Return the formula for the mean stress at which a bar with rectangular section buckles, Pa.
 
     With the slenderness s = L sqrt(12) / side and s_1 = sqrt(2 pi^2 C E / S_y): Euler's C pi^2 E / s^2 above s_1,

@@ -7,7 +7,7 @@ from typing import Literal
 
 from ..model.cycle.gas_work import compressors, cylinder_loads
 from ..model.machine.clearance import Bar
-from ..model.machine.cylinder_machines import cylinder_count
+from ..model.machine.cylinders_as_machines import cylinder_count
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.work_absorption import (
     carries_linkage_forces,
@@ -217,7 +217,7 @@ A_BAR = _defining(
 )
 
 
-def _needs_mass_of(part: str) -> Need:
+def _need_of_mass(part: str) -> Need:
     def weighs(machine: Mechanism) -> bool:
         link = getattr(machine.with_largest_variables, part)
         return isinstance(link, Bar) or link.mass > 0.0
@@ -228,4 +228,4 @@ def _needs_mass_of(part: str) -> Need:
     )
 
 
-CRANK_MASS, ROD_MASS = _needs_mass_of("crank"), _needs_mass_of("rod")
+CRANK_MASS, ROD_MASS = _need_of_mass("crank"), _need_of_mass("rod")

@@ -95,7 +95,7 @@ class MotionDeviation(Quantity):
         further = dimensions.shape[1] - 3  # extra variables do not move the slider
         return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 
-    def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
+    def best_fit_phase_and_shift(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return the best-fit phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
         best_fit: Fit = fit_target_motion(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         columns = {}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.machine.cylinder_machines import cycle_turns, single_cylinder
+from ..model.machine.cylinders_as_machines import cycle_turns, single_cylinder_machine
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers
@@ -30,7 +30,9 @@ class PinPressure(BarPeak):
 
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the force on each bar that bears on the pin; see `BarPeak`."""
-        return [SectionLoad(self.pin, projected_area(self.pin, name)) for name in self.bars(mechanism)]
+        return [
+            SectionLoad(self.pin, projected_area_formula(self.pin, name)) for name in self.links_with_bars(mechanism)
+        ]
 
     def allowable_value(self, mechanism: Mechanism) -> float:
         """Return the allowable bearing pressure of the material, Pa."""
@@ -57,7 +59,7 @@ class PinShear(BarPeak):
         return material_and_pins(mechanism).material.yield_strength / math.sqrt(3.0)
 
 
-def projected_area(pin: str, name: str) -> Formula:
+def projected_area_formula(pin: str, name: str) -> Formula:
     """Return the formula for the projected bearing area D d of a pin in a link, m^2."""
     return lambda number: number(PINS[pin]) * number(LINKS[name].depth)
 
@@ -96,19 +98,21 @@ class PinRubbing(BarQuantity):
     pin: str
     factor: Callable[[Mechanism], Formula]
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
+    def pieces_by_part(
+        self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
+    ) -> Sequence[BarPieces]:
         """Return the quantity for each bar that bears on the pin; see `BarQuantity`."""
-        work, place = turn_work(single_cylinder(mechanism), designs, gradients=gradients), _RUBS[self.pin]
+        work, place = turn_work(single_cylinder_machine(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]
         mean = BarPieces(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)
         return [
-            mean.times(
+            mean.multiplied_by(
                 evaluate_formula_of_raw_numbers(
                     mechanism, designs, _factor_over_twice_length(factor, LINKS[name].depth), gradients=gradients
                 )
             )
-            for name in self.bars(mechanism)
+            for name in self.links_with_bars(mechanism)
         ]
 
 
@@ -117,11 +121,11 @@ def _factor_over_twice_length(factor: Formula, depth: int) -> Formula:
     return lambda number: factor(number) / (2.0 * number(depth))
 
 
-def _rubbing_speed(mechanism: Mechanism) -> Formula:
+def _crank_speed_magnitude_formula(mechanism: Mechanism) -> Formula:
     return lambda number: mechanism.direction * number(Raw.SPEED)
 
 
-def _wear_travel(mechanism: Mechanism) -> Formula:
+def _wear_factor_formula(mechanism: Mechanism) -> Formula:
     """Return K times the crank angle in a million cycles; `PinRubbing` supplies the rest of K F s / A."""
     assert mechanism.strength is not None
     rate = mechanism.strength.wear_coefficient or math.nan
@@ -189,7 +193,7 @@ PIN_SHEAR_SLIDER_PIN = _shear(
 _pv = partial(
     PinRubbing,
     kind=PRESSURE_SPEED,
-    factor=_rubbing_speed,
+    factor=_crank_speed_magnitude_formula,
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
     advice="It determines how a dry bearing heats and wears; bushing makers state limits of 0.05 to 2 MPa m/s.",
     example="0.5 MPa m/s",
@@ -197,7 +201,7 @@ _pv = partial(
 _wear = partial(
     PinRubbing,
     kind=LENGTH,
-    factor=_wear_travel,
+    factor=_wear_factor_formula,
     source="J. F. Archard, Contact and rubbing of flat surfaces, J. Appl. Phys. 24, 1953, 981-988",
     advice="Depth over the bearing's projected area, at the mean of all crank angles.",
     example="0.1 mm",

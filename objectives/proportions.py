@@ -42,8 +42,12 @@ _ABOVE_ONE = Domain(
 
 
 def _stroke_bounds(box: LengthRanges) -> tuple[float, float]:
-    r = box.crank
-    greatest = geometry.stroke(box.r1, box.l0, box.a1) if box.turns else 2.0 * math.sqrt(r * min(box.l1, r + box.a1))
+    r = box.longest_rotating_crank
+    greatest = (
+        geometry.stroke(box.r1, box.l0, box.a1)
+        if box.rotates_fully_throughout
+        else 2.0 * math.sqrt(r * min(box.l1, r + box.a1))
+    )
     return float(geometry.stroke(box.r0, box.l1, box.a0)), float(greatest)
 
 
@@ -193,10 +197,10 @@ def time_ratio_of_excess_angle(excess: float) -> float:
 
 
 def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
-    if box.turns:
+    if box.rotates_fully_throughout:
         greatest = geometry.time_ratio(box.r1, box.l0, box.a1)
     else:
-        r = box.crank
+        r = box.longest_rotating_crank
         a = max(box.a0, box.l0 - r)
         greatest = time_ratio_of_excess_angle(math.acos(a / (2.0 * r + a))) if box.a1 else 1.0
     return float(geometry.time_ratio(box.r0, box.l1, box.a0)), float(greatest)

@@ -57,7 +57,7 @@ class Domain:
     remedy: str
 
     @classmethod
-    def share(cls, subject: str, usual: str) -> Domain:
+    def of_fraction(cls, subject: str, usual: str) -> Domain:
         """Return the domain for a fraction, 0 to 1."""
         return cls(
             upper=1.0, lower=0.0, open=False, rule=f"{subject} must lie between 0 and 1", remedy=f"{usual} are usual"
@@ -69,7 +69,7 @@ class Domain:
         remedy = f"{usual} are usual (a plain number is in rad)"
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{rule}, ends excluded", remedy=remedy)
 
-    def refuses(self, value: float, *, least: bool) -> bool:
+    def refuses_bound(self, value: float, *, least: bool) -> bool:
         """Return whether no linkage can have a value. least: whether the value is a lower bound.
 
         A lower bound at the lower end has no effect, except that it disables the quantity's floor if there is one.
@@ -89,7 +89,7 @@ class Values:
     values: Array
     gradients: Array | None
 
-    def times(self, factor: Values) -> Values:
+    def multiplied_by(self, factor: Values) -> Values:
         """Return the product of two quantities for the same designs."""
         slopes = None
         if self.gradients is not None and factor.gradients is not None:
@@ -120,7 +120,7 @@ class Pieces:
     least: bool = False
     opposite: Pieces | None = None
 
-    def take(self, places: IntArray) -> Pieces:
+    def select_pieces(self, places: IntArray) -> Pieces:
         """Return the pieces at indices (n, m), row by row."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),
@@ -130,7 +130,7 @@ class Pieces:
         )
 
 
-def display_fact(default: Any) -> Any:
+def display_only_field(default: Any) -> Any:
     """Return a display-only fact: quantities that differ only in such facts compute the same values."""
     return _field(default=default, compare=False)
 
@@ -160,36 +160,36 @@ class Quantity(ABC):
     """
 
     name: str
-    title: str = display_fact("")
+    title: str = display_only_field("")
     kind: Kind
-    key: str = display_fact("")
-    short: str = display_fact("")
-    place: int = display_fact(1000)
-    group: Group = display_fact(Group.FURTHER)
-    sentence: str = display_fact("")
-    advice: str = display_fact("")
-    formula: str = display_fact("")
-    section: str = display_fact("")
-    source: str = display_fact(MECHANICS)
-    picture: str = display_fact("")
-    example: str | float | None = display_fact(None)
-    better: Better = display_fact("low")
-    signed: bool = display_fact(False)
-    instead_of_quotient: str = display_fact("")
-    domain: Domain | None = display_fact(None)
-    floor: float | None = display_fact(None)
-    in_line: float | None = display_fact(None)
-    endless: str = display_fact("")
-    needs: tuple[Need, ...] = display_fact(())
-    instead: str = display_fact("")
-    bounds: QuantityBounds | None = display_fact(None)
-    allowed_by: str = display_fact("")
-    about_tolerances: bool = display_fact(False)
-    offered: tuple[Offer, ...] = display_fact(())
-    on_datasheet: bool = display_fact(False)
-    plain: bool = display_fact(False)
-    turning: bool = display_fact(True)
-    smooth_at_zero_offset: bool = display_fact(False)
+    key: str = display_only_field("")
+    short: str = display_only_field("")
+    place: int = display_only_field(1000)
+    group: Group = display_only_field(Group.FURTHER)
+    sentence: str = display_only_field("")
+    advice: str = display_only_field("")
+    formula: str = display_only_field("")
+    section: str = display_only_field("")
+    source: str = display_only_field(MECHANICS)
+    picture: str = display_only_field("")
+    example: str | float | None = display_only_field(None)
+    better: Better = display_only_field("low")
+    signed: bool = display_only_field(False)
+    instead_of_quotient: str = display_only_field("")
+    domain: Domain | None = display_only_field(None)
+    floor: float | None = display_only_field(None)
+    in_line: float | None = display_only_field(None)
+    endless: str = display_only_field("")
+    needs: tuple[Need, ...] = display_only_field(())
+    instead: str = display_only_field("")
+    bounds: QuantityBounds | None = display_only_field(None)
+    allowed_by: str = display_only_field("")
+    about_tolerances: bool = display_only_field(False)
+    offered: tuple[Offer, ...] = display_only_field(())
+    on_datasheet: bool = display_only_field(False)
+    plain: bool = display_only_field(False)
+    turning: bool = display_only_field(True)
+    smooth_at_zero_offset: bool = display_only_field(False)
     table: ClassVar[str] = ""
     """Table that a job must have for the quantity to exist; empty if every problem has it."""
 
@@ -197,14 +197,14 @@ class Quantity(ABC):
         object.__setattr__(self, "title", self.title or self.name.replace("_", " "))
 
     @property
-    def stem(self) -> str:
+    def column_stem(self) -> str:
         """Its column name without the unit."""
         return self.key or self.name
 
     @property
     def field(self) -> str:
         """Key in tables and JSON, including the unit: "stroke_mm"."""
-        return self.stem + self.kind.metric.suffix
+        return self.column_stem + self.kind.metric.suffix
 
     @property
     def unit(self) -> DisplayUnit:
@@ -217,14 +217,14 @@ class Quantity(ABC):
         return self.short or self.title
 
     @property
-    def usual(self) -> str | float:
+    def usual_value(self) -> str | float:
         """A usual value as in job files."""
         if self.example is not None:
             return self.example
         return self.kind.example if self.kind.unit else float(self.kind.example)
 
     @property
-    def required(self) -> str:
+    def job_requirements_text(self) -> str:
         """Requirements on a job, in words; empty if every job meets them."""
         table = [f"it needs the table [{self.table}]"] if self.table else []
         return "; ".join(dict.fromkeys([*table, *(need.rule for need in self.needs)]))
@@ -235,7 +235,7 @@ class Quantity(ABC):
         return True
 
     @property
-    def constant(self) -> bool:
+    def is_constant(self) -> bool:
         """Whether it is the same for every design of one machine."""
         return False
 

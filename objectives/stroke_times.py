@@ -8,7 +8,7 @@ import numpy as np
 
 from ..model.cycle.stroke_times import ScaledStrokeTimes, scaled_stroke_times
 from ..model.kernel.arithmetic import STEP
-from ..model.machine.cylinder_machines import cylinder_count
+from ..model.machine.cylinders_as_machines import cylinder_count
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers, require_design_columns
@@ -53,7 +53,7 @@ class StrokeTime(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula at constant speed; see `Quantity`."""
-        return _constant_speed_formulas(mechanism, self._stroke_crank_angle, _over_mean_speed(mechanism))
+        return _constant_speed_formulas(mechanism, self._stroke_crank_angle, _inverse_speed_formula(mechanism))
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -62,15 +62,15 @@ class StrokeTime(Quantity):
             return undefined_values(dimensions, gradients)
         angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._stroke_crank_angle, gradients))
         per_speed = evaluate_formula_of_raw_numbers(
-            mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients
+            mechanism, dimensions, _inverse_speed_formula(mechanism), gradients=gradients
         )
-        return angles.times(Values(*per_speed))
+        return angles.multiplied_by(Values(*per_speed))
 
     def _stroke_crank_angle(self, times: ScaledStrokeTimes) -> Any:
         return times.outward if self.outward else times.inward
 
 
-def _over_mean_speed(mechanism: Mechanism) -> Formula:
+def _inverse_speed_formula(mechanism: Mechanism) -> Formula:
     return lambda number: 1.0 / (mechanism.direction * number(Raw.SPEED))
 
 
@@ -104,7 +104,7 @@ class StrokeTimeRatio(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula at constant speed; see `Quantity`."""
-        return _constant_speed_formulas(mechanism, self._ratio)
+        return _constant_speed_formulas(mechanism, self._ratio_of_times)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -122,11 +122,13 @@ class StrokeTimeRatio(Quantity):
     def _cylinder_ratios(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
         """Return the ratios (c, n) for cylinders that differ, and their derivatives (c, n, 3 + k)."""
         count = 1 if mechanism.speed_profile is None else cylinder_count(mechanism)
-        parts = [evaluate_stroke_times(mechanism, designs, self._ratio, gradients, cylinder=k) for k in range(count)]
+        parts = [
+            evaluate_stroke_times(mechanism, designs, self._ratio_of_times, gradients, cylinder=k) for k in range(count)
+        ]
         slopes = [ratio_slopes for _, ratio_slopes in parts if ratio_slopes is not None]
         return np.stack([values for values, _ in parts]), np.stack(slopes) if slopes else None
 
-    def _ratio(self, times: ScaledStrokeTimes) -> Any:
+    def _ratio_of_times(self, times: ScaledStrokeTimes) -> Any:
         return times.outward / times.inward if self.outward else times.inward / times.outward
 
 

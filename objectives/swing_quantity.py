@@ -9,8 +9,13 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.swing.closure import slider_travels, swing_angles, swings_without_dead_point, transmission_angle_candidates
-from ..model.swing.peaks import SwingPeaks, holding_drive_peaks, negated_least_drive_peaks, swing_peaks
+from ..model.swing.closure import (
+    slider_travels,
+    swept_crank_angles,
+    swings_without_dead_point,
+    transmission_angle_candidates,
+)
+from ..model.swing.peaks import SwingPeaks, holding_drive_peaks, peaks_of_negated_least_drive, swing_peaks
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
@@ -42,7 +47,7 @@ class SwingQuantity(Quantity):
         assert self.swing is not None
         return self.swing
 
-    def unfit(self, swing: Swing) -> str | None:
+    def unfit_swing_reason(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if swing.of_lever:
             from .registry import FACTS
@@ -62,7 +67,7 @@ class SwingQuantity(Quantity):
     def unmet_need(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return why a machine does not define it; see `Quantity`."""
         if consequence == "undefined" and self.swing is not None:
-            reason = self.unfit(self.swing)
+            reason = self.unfit_swing_reason(self.swing)
             if reason is not None:
                 return reason
             if self.tolerated and not (
@@ -116,7 +121,7 @@ class SwingLeast(SwingQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        negated_peaks = negated_least_drive_peaks(
+        negated_peaks = peaks_of_negated_least_drive(
             mechanism, self._required_swing, dimensions, back=self.back, gradients=gradients, limit=1
         )
         values = np.where(negated_peaks.values[:, 0] == np.inf, -np.inf, -negated_peaks.values[:, 0] + 0.0)
@@ -124,7 +129,7 @@ class SwingLeast(SwingQuantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the lowest local minima; see `Quantity`."""
-        negated_peaks = negated_least_drive_peaks(
+        negated_peaks = peaks_of_negated_least_drive(
             mechanism, self._required_swing, dimensions, back=self.back, gradients=True
         )
         assert negated_peaks.gradients is not None
@@ -162,9 +167,9 @@ class ClosedFormSwingQuantity(SwingQuantity):
         """True."""
         return True
 
-    def unfit(self, swing: Swing) -> str | None:
+    def unfit_swing_reason(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if all designs have the same value; see `SwingQuantity`."""
-        reason = super().unfit(swing)
+        reason = super().unfit_swing_reason(swing)
         if reason is not None or swing.stated_for != self.stated:
             return reason
         stated_value = self.unit.factor * abs(swing.end - swing.start)
@@ -188,7 +193,7 @@ class ClosedFormSwingQuantity(SwingQuantity):
             angles = transmission_angle_candidates(mechanism, self._required_swing, designs[rows])
             passing_values, slopes = angles.values, angles.slopes
         else:
-            closed_form = slider_travels if self.measure == "travel" else swing_angles
+            closed_form = slider_travels if self.measure == "travel" else swept_crank_angles
             value, slope = closed_form(mechanism, self._required_swing, designs[rows])
             passing_values, slopes = value[:, None], slope[:, None]
         order = np.argsort(passing_values, axis=1, kind="stable")

@@ -22,7 +22,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
-from .kinds import KINDS, DisplayUnit, Kind, amount_kind, count_with_noun, kind_in
+from .kinds import KINDS, DisplayUnit, Kind, amount_kind, count_with_noun, kind_displayed_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
@@ -157,7 +157,7 @@ def kind_of_any_unit(symbol: str) -> Kind:
     if kind in KINDS:
         return kind
     plain = symbol if _parse_unit(symbol)[0] == 1 else kind.unit
-    return replace(kind_in(symbol, value_of_one_si_unit_in(symbol)), name=f"a value in {plain}", unit=plain)
+    return replace(kind_displayed_in(symbol, value_of_one_si_unit_in(symbol)), name=f"a value in {plain}", unit=plain)
 
 
 def dimension_of(symbol: str) -> Dimension:
@@ -180,7 +180,7 @@ def kind_of_dimension(dimension: Dimension, symbol: str = "") -> Kind:
         return next((kind for kind in candidates if symbol in kind.typed), candidates[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
     unit = " ".join(unit_of_base_dimension(base) + (f"^{power}" if power != 1 else "") for base, power in powers)
-    return kind_in(unit) if all(base in _BASES for base, _ in powers) else amount_kind(unit)
+    return kind_displayed_in(unit) if all(base in _BASES for base, _ in powers) else amount_kind(unit)
 
 
 def unit_of_base_dimension(base: str) -> str:
@@ -258,7 +258,7 @@ def plus_minus_ends(value: object) -> tuple[str, str] | None:
     return f"{float(middle - half)!r} {unit}".rstrip(), f"{float(middle + half)!r} {unit}".rstrip()
 
 
-def is_value(text: str) -> bool:
+def is_number_with_any_unit(text: str) -> bool:
     """Return whether a text is a single number, alone or with any unit."""
     parts = number_and_unit(text)
     try:
@@ -270,10 +270,10 @@ def is_value(text: str) -> bool:
 def number_and_unit(text: str) -> tuple[str, str] | None:
     """Return digits and unit, known or not, from a text that is a single number; None for any other text."""
     match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
-    return None if match is None else (match[1], _unit_in(match))
+    return None if match is None else (match[1], _unit_of_match(match))
 
 
-def _unit_in(match: re.Match[str]) -> str:
+def _unit_of_match(match: re.Match[str]) -> str:
     """Return the unit of a value, "" if it has none; spaces are removed if it is in `_SPOKEN`."""
     unit = (match[2] or match[3] or "").strip()
     plain = "".join(unit.split())
@@ -384,7 +384,7 @@ def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         raise InputError(
             f'{rule}; got {quote(text)}, which can be read in two ways; write "{two[1]} rpm" or "{two[1]}1 rpm"'
         )
-    number, unit = Fraction(match[1]), dict(kind.spoken).get(_unit_in(match), _unit_in(match))
+    number, unit = Fraction(match[1]), dict(kind.spoken).get(_unit_of_match(match), _unit_of_match(match))
     if not unit and kind.unit:
         bare = " (in a job file, without quotes)" if "plain number" in write else ""
         raise InputError(f"{rule} with its unit; got {quote(text)}; {write}{bare}")
@@ -415,7 +415,7 @@ def _kind_of_other_unit(number: str, unit: str, kind: Kind) -> tuple[str, str]:
     if force != unit and _parse_unit(force)[1] == _parse_unit(kind.unit)[1]:
         newtons = f"{float(Fraction(number) * _parse_unit(force)[0]):.4g} {kind.unit}"
         return note, f'a weight must be stated as a force: write "{number} {force}" or "{newtons}"'
-    return note, f"write the mass in {kind.unit}" if kinds and kind.plain == "mass" and _parse_unit("N")[
+    return note, f"write the mass in {kind.unit}" if kinds and kind.name_without_article == "mass" and _parse_unit("N")[
         1
     ] == dimension else ""
 

@@ -16,7 +16,7 @@ from .feasibility.best_value import Best, find_best_design
 from .feasibility.infeasibility import diagnose_infeasibility, require_finite, valueless_quantity_text_of_variants
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
-from .methods.auto.auto import deliver_front, search_with
+from .methods.auto.auto import deliver_front, search_front_by_method
 from .methods.auto.partial_front import partial_front
 from .methods.registry import (
     method_of_problem,
@@ -31,7 +31,7 @@ from .search.checkpoints import Cancelled, Checkpoints, Record, identity_of, req
 from .search.elimination import elimination_branches
 from .search.evaluation import Evaluator
 from .search.mirrored_branches import drop_mirrored_branches
-from .search.sample_and_zoom import Archive, Callback, Run, searched_evaluators, zoom
+from .search.sample_and_zoom import Archive, Callback, Run, searched_evaluators, zoom_into_sparse_parts
 
 
 def solve(
@@ -159,7 +159,7 @@ def _solve_discrete(problem: Problem, solver: _ContinuousSolver) -> ParetoFront:
 
 def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     method, free = method_of_problem(problem), searched_evaluators(evaluators)
-    front = search_with(method, problem, evaluators, run)
+    front = search_front_by_method(method, problem, evaluators, run)
     if front is not None:
         return front
     if problem.without_gradient():
@@ -172,7 +172,7 @@ def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run)
     if len(diagnosis.feasible) and free:
         archive = run.archive = Archive.empty(len(problem.objectives))
         _seed_archive(archive, free, diagnosis.feasible)
-        zoom(problem, free, archive, run)
+        zoom_into_sparse_parts(problem, free, archive, run)
         front = deliver_front(problem, evaluators, archive, run)
         if front is not None:
             return front
@@ -216,4 +216,4 @@ def _seed_archive(archive: Archive, evaluators: list[Evaluator], dimensions: Arr
         branch = evaluator.branch
         on_side = dimensions[np.sign(dimensions[:, 2]) != -branch.sign]
         if len(on_side):
-            archive.screen(index, evaluator, branch.coordinates(on_side))
+            archive.screen(index, evaluator, branch.points_of_designs(on_side))

@@ -75,7 +75,7 @@ def units(quantity: Quantity) -> str:
 def requirement(quantity: Quantity) -> str:
     """Return a line for a job's constraints with a usual value, on the side that a requirement limits."""
     side = {"low": "max", "high": "min", "": "equals"}[quantity.better]
-    usual = quantity.usual
+    usual = quantity.usual_value
     return f"{quantity.name} = {{ {side} = {usual if isinstance(usual, float) else chr(34) + usual + chr(34)} }}"
 
 

@@ -74,7 +74,7 @@ class ClearanceSummary:
     energy_residual: float
 
 
-def summarise(run: ClearanceRun) -> ClearanceSummary:
+def clearance_statistics(run: ClearanceRun) -> ClearanceSummary:
     """Return the statistics of a run. Raises `InputError` if no turn remains after discarding."""
     turns = run.cycles - run.discard
     if turns < 1:

@@ -27,7 +27,7 @@ from ..kernel.arithmetic import STEP
 from ..kernel.batches import require_full_rotation
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinder_machines import (
+from ..machine.cylinders_as_machines import (
     cycle_turns,
     cylinder_count,
     half_of_cycle_at,
@@ -86,7 +86,7 @@ def compressor_may_deliver_nothing(mechanism: Mechanism) -> bool:
     return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
 
 
-def gas_cycle_number(
+def evaluate_on_gas_cycle(
     mechanism: Mechanism, designs: Array, number: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
     """Return one number (n,) from the `GasCycle` for designs (n, 3 + k), and its derivatives (n, 3 + k).
@@ -97,7 +97,7 @@ def gas_cycle_number(
     count = cylinder_count(mechanism)
     if count > 1:
         single = replace(mechanism, arrangement=None)
-        return gas_cycle_number(single, designs, lambda gas: number(gas.multiplied_by(count)), gradients=gradients)
+        return evaluate_on_gas_cycle(single, designs, lambda gas: number(gas.multiplied_by(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _gas_cycle_of_two_turns(mechanism, designs, gradients=gradients)
         return np.asarray(number(sums), dtype=np.float64), None if rates is None else _derivatives_by_design(
@@ -110,7 +110,7 @@ def gas_cycle_number(
     if not gradients:
         return values, None
     slopes = number(_sum_gas_cycles(mechanism, steps[:, :, 0])).imag / STEP
-    return values, numbers.chain_to_designs(slopes.reshape(len(designs), len(numbers.columns)))
+    return values, numbers.gradients_by_design_numbers(slopes.reshape(len(designs), len(numbers.columns)))
 
 
 def _gas_cycle_of_two_turns(
@@ -127,7 +127,9 @@ def _gas_cycle_of_two_turns(
         if gradients:
             shape = len(designs), len(numbers.columns)
             parts = _sum_gas_cycles(half, steps[:, :, 0], four)
-            slopes.append(GasCycle(*(numbers.chain_to_designs(part.imag.reshape(shape) / STEP) for part in parts)))
+            slopes.append(
+                GasCycle(*(numbers.gradients_by_design_numbers(part.imag.reshape(shape) / STEP) for part in parts))
+            )
     return _sum_of_turns(*sums), _sum_of_turns(*slopes) if gradients else None
 
 
@@ -154,11 +156,11 @@ def _sum_gas_cycles(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()
         if load.compression_exponent == 0.0:
             gained, spent, share = low * stroke, high * stroke, 1.0 + 0.0 * stroke
         else:
-            gained, spent, share = _stroke_work(stroke, h, low, high, compression, expansion)
+            gained, spent, share = _stroke_works_and_intake_fraction(stroke, h, low, high, compression, expansion)
         if load.enters is Enters.BURNING_CYLINDER:
             burnt = blocks[:, q + 7]
             widens = np.log((h + stroke) / (h + burnt))
-            gained = high * (burnt + (h + burnt) * widens * _mean_of_decay((expansion - 1.0) * widens))
+            gained = high * (burnt + (h + burnt) * widens * _mean_of_exponential_decay((expansion - 1.0) * widens))
         swept, clearance, work = swept + area * stroke, clearance + area * h, work + area * (gained - spent)
         cycles = cycles + area * (gained - spent) * (0.5 if four and not four[k] else 1.0)
         if isinstance(load, Compressor):
@@ -168,7 +170,9 @@ def _sum_gas_cycles(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()
     return GasCycle(swept, clearance, work, cycles, delivers, delivered)
 
 
-def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
+def _stroke_works_and_intake_fraction(
+    stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any
+) -> Any:
     """Return the work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
     expanded, compressed = (
         expansion_end_position(h, high / low, expansion),
@@ -179,16 +183,16 @@ def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, exp
     opens, delivers = expanded.real < stroke.real, compressed.real > 0.0
     down = np.where(opens, ratio / expansion, full_stroke)
     up = np.where(delivers, ratio / compression, full_stroke)
-    gained = high * h * np.where(h.real > 0.0, down * _mean_of_decay((expansion - 1.0) * down), 0.0)
+    gained = high * h * np.where(h.real > 0.0, down * _mean_of_exponential_decay((expansion - 1.0) * down), 0.0)
     gained = gained + np.where(opens, low * (stroke - expanded), 0.0)
-    spent = low * (h + stroke) * up * _mean_of_decay(-(compression - 1.0) * up)
+    spent = low * (h + stroke) * up * _mean_of_exponential_decay(-(compression - 1.0) * up)
     spent = spent + np.where(delivers, high * compressed, 0.0)
     share = 1.0 - expanded / stroke
     stuck = compressed / stroke
     return gained, spent, np.where(delivers | (share.real < stuck.real), share, stuck)
 
 
-def _mean_of_decay(x: Any) -> Any:
+def _mean_of_exponential_decay(x: Any) -> Any:
     """Return (1 - exp(-x)) / x, exact to rounding even near zero."""
     near = np.abs(x.real) < _SERIES
     safe = np.where(near, 1.0, x)

@@ -65,7 +65,9 @@ def locking_states(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLik
     design = _derived_design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
     states = []
-    for theta, load, excess in zip(angles, loads, _driving_margin(mechanism.friction, linkage, angles), strict=True):
+    for theta, load, excess in zip(
+        angles, loads, _margin_against_locking(mechanism.friction, linkage, angles), strict=True
+    ):
         if excess > 0.0:
             states.append("drives")
         else:
@@ -86,7 +88,7 @@ def _derived_design(mechanism: Mechanism, linkage: Linkage) -> Design:
     return design
 
 
-def _driving_margin(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
+def _margin_against_locking(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
     """Return |along| - |D| at crank angles, with the signs at the angles `probe` within the segment."""
     probe = theta if probe is None else probe
     arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
@@ -103,7 +105,7 @@ def _locked_spans(friction: Friction, linkage: Linkage, a: float, b: float) -> l
     middle = a + 0.382 * (b - a)
 
     def excess(theta: Any) -> Any:
-        return _driving_margin(friction, linkage, theta, middle)
+        return _margin_against_locking(friction, linkage, theta, middle)
 
     from scipy.optimize import brentq
 

@@ -19,12 +19,12 @@ from ..dynamics.torque import reflected_inertia, shaking_force_and_moment
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import Arrangement
-from ..machine.cylinder_machines import TURN, cycle_turns, machine_of_first_turn, member_machines
+from ..machine.cylinders_as_machines import TURN, cycle_turns, machine_of_first_turn, machines_of_arrangement
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_added_masses_only, raw_vector
 from ..machine.speed_profile import time_per_angle
-from ..signals.panel_polynomials import Extreme, Panels, angle_in_cycle, larger_extreme, resolve_curves
+from ..signals.panel_polynomials import Extreme, Panels, larger_extreme, resolve_curves, wrap_into_cycle
 from ..signals.signals import design_motion
 from .crank_speed import crank_speed_and_acceleration, speed_knots
 from .cycle import breakpoints, cycle
@@ -135,7 +135,7 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     speed, acceleration = crank_speed_and_acceleration(mechanism, theta)
     torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
-    for member in member_machines(mechanism):
+    for member in machines_of_arrangement(mechanism):
         at = theta + member.lead
         torques.append(cycle(member.mechanism, linkage, at, speed=speed, acceleration=acceleration).torque)
         shaken = shaking_curves(member.mechanism, linkage, at, speed=speed, acceleration=acceleration)
@@ -153,7 +153,7 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
 
 def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the shaft crank angles, rad from 0, at which the torque may have a jump or a kink."""
-    angles = [breakpoints(member.mechanism, linkage) - member.lead for member in member_machines(mechanism)]
+    angles = [breakpoints(member.mechanism, linkage) - member.lead for member in machines_of_arrangement(mechanism)]
     angles += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
     return np.unique(np.mod(np.concatenate(angles), cycle_turns(mechanism) * TURN))
 
@@ -165,9 +165,9 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
-    sizes = _magnitudes_without_cancelling(mechanism, linkage)
+    sizes = _curve_magnitudes_without_cancelling(mechanism, linkage)
     panels = resolve_curves(
-        lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
+        lambda theta: _rows_of_curves(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
     )
     least, greatest = (_zero_if_cancelled(extreme, sizes[_TORQUE], period) for extreme in panels.extremes(_TORQUE))
     moment = larger_extreme(panels.extremes(_MOMENT), period)
@@ -180,15 +180,15 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
         rms=math.sqrt(panels.mean_square(_TORQUE, time=time)),
         fluctuation=math.sqrt(panels.mean_square(_TORQUE, subtract=mean)),
         energy_change=panels.integral_range(_TORQUE),
-        shaking_force=_force_extreme(panels, _FORCE, sizes, period),
+        shaking_force=_extreme_from_squared_force(panels, _FORCE, sizes, period),
         rms_shaking_force=math.sqrt(max(0.0, panels.mean(_FORCE, time))),
         shaking_moment=_zero_if_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
         rms_shaking_moment=math.sqrt(panels.mean_square(_MOMENT, time=time)),
-        couple=_force_extreme(panels, _COUPLE, sizes, period),
+        couple=_extreme_from_squared_force(panels, _COUPLE, sizes, period),
     )
 
 
-def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
+def _rows_of_curves(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
     x, y = curves.force_x, curves.force_y
     couple = curves.couple_x**2 + curves.couple_y**2
     profile = mechanism.speed_profile
@@ -196,12 +196,12 @@ def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
     return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple, time])
 
 
-def _magnitudes_without_cancelling(mechanism: Mechanism, linkage: Linkage) -> Array:
+def _curve_magnitudes_without_cancelling(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the magnitudes that the curves would have if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
-    for member in member_machines(mechanism):
+    for member in machines_of_arrangement(mechanism):
         single = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
         curves = multi_cylinder_curves(single, linkage, theta)
         force, torque = np.hypot(curves.force_x, curves.force_y).max(), np.abs(curves.torque).max()
@@ -214,10 +214,10 @@ def _zero_if_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme value, or zero if cylinders cancel up to rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
-    return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
+    return Extreme(extreme.value, wrap_into_cycle(extreme.angle, period))
 
 
-def _force_extreme(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
+def _extreme_from_squared_force(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
     """Return the maximum magnitude of a force from its square."""
     greatest = panels.extremes(curve)[1]
     return _zero_if_cancelled(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kinematics import geometry
 from ..linkage.linkage import Linkage
-from ..machine.cylinder_machines import cylinder_machines
+from ..machine.cylinders_as_machines import machine_of_each_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.speed_profile import Profile
 
@@ -52,9 +52,9 @@ def scaled_stroke_times(
         outer, inner = geometry.outer_crank_angle(crank, rod, offset), geometry.inner_crank_angle(crank, rod, offset)
         if mechanism.branch == "crossed":
             outer, inner = math.pi - outer, 3.0 * math.pi - inner
-        lead = cylinder_machines(mechanism)[cylinder].lead
+        lead = machine_of_each_cylinder(mechanism)[cylinder].lead
         inward_span = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
-        turn = profile.elapsed_time.full_turn
+        turn = profile.elapsed_time.elapsed_over_full_turn
     outward, inward = (
         (turn - inward_span, inward_span) if mechanism.direction > 0.0 else (inward_span, turn - inward_span)
     )
@@ -74,7 +74,7 @@ def massless_machine(mechanism: Mechanism) -> Mechanism:
 
 def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
     angle = np.asarray(np.real(crank_angle), dtype=np.float64)
-    elapsed = profile.elapsed_time.up_to(angle)
+    elapsed = profile.elapsed_time.elapsed_up_to(angle)
     if np.iscomplexobj(crank_angle):
         return elapsed + 1j * np.imag(crank_angle) / profile.speed_ratio(angle)
     return elapsed
@@ -98,7 +98,7 @@ def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
         return linkage.slow_stroke(direction=mechanism.direction)
     linkage.require_full_rotation()
     slower = []
-    for cylinder in range(len(cylinder_machines(mechanism))):
+    for cylinder in range(len(machine_of_each_cylinder(mechanism))):
         times = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset, cylinder=cylinder)
         difference = np.asarray((times.outward - times.inward) / (times.outward + times.inward))
         slower.append(np.where(difference > _EQUAL, "outward", np.where(difference < -_EQUAL, "inward", "equal")))

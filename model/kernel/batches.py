@@ -130,7 +130,7 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release)
 
 
-def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, knots: int = 0) -> None:
+def run_in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, knots: int = 0) -> None:
     """Call work(begin, end) for consecutive chunks of range(count), on all cores if there are several.
 
     Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.

@@ -21,8 +21,8 @@ from .disk_cache import (
     INTO,
     MODEL,
     KernelSource,
-    awaited_files,
-    build_lock_file,
+    awaited_file_names,
+    compilation_lock_file,
     compile_in_processes,
     hold_lock,
     read_from_any_folder,
@@ -47,7 +47,7 @@ class _CompilationTask(NamedTuple):
     def is_cheap_after(self, compiled: Iterable[int]) -> bool:
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.code_length()
 
-    def is_left_to(self, larger: _CompilationTask) -> bool:
+    def is_compiled_along_with(self, larger: _CompilationTask) -> bool:
         """Whether the process that compiles the larger set also compiles this one."""
         return self.code_length() < larger.code_length() and self.is_cheap_after(larger.codes)
 
@@ -55,7 +55,7 @@ class _CompilationTask(NamedTuple):
         """Return a rank, lowest first: long tasks with their followers, then small tasks."""
         if 2 * self.code_length() < max(task.code_length() for task in tasks):
             return True, self.code_length()
-        return False, -sum(task.code_length() for task in tasks if task is self or task.is_left_to(self))
+        return False, -sum(task.code_length() for task in tasks if task is self or task.is_compiled_along_with(self))
 
 
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
@@ -63,16 +63,16 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
 
     Kernels that a process waits for come first, then those in `modules` that many jobs need. Among these, kernels with
     mostly formulas that this process has already compiled come first, then urgent kernels. The file of
-    `build_lock_file` records the progress. Ends if nothing can be stored.
+    `compilation_lock_file` records the progress. Ends if nothing can be stored.
     """
-    names = awaited_files(folder)
+    names = awaited_file_names(folder)
     tasks_found = _tasks_of_packages(folder, packages, modules)
     everything = [task for task in tasks_found if not task.seldom or task.file.name in names]
     tasks, awaited = [*everything], {task.file.name for task in everything}
     compiled: set[int] = set()
     complete = False
     while True:
-        names = awaited_files(folder)
+        names = awaited_file_names(folder)
         listed = {task.file.name for task in everything}
         if not complete and (not tasks or not listed.issuperset(names)):
             tasks_found = _tasks_of_packages(
@@ -88,7 +88,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                 task.file.name not in names,
                 task.seldom,
                 not task.is_cheap_after(compiled),
-                any(task.is_left_to(larger) for larger in everything),
+                any(task.is_compiled_along_with(larger) for larger in everything),
                 task.rank(everything),
             ),
         )
@@ -99,7 +99,9 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                 if task in reported:  # nobody waits for kernels that are compiled ahead
                     number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
-                        build_lock_file(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
+                        compilation_lock_file(folder, packages).write_text(
+                            f"{number} of {len(reported)} done, now {name}"
+                        )
                 if not store_machine_code(task.file, task.source.compile()):
                     return
                 compiled.update(task.codes)

@@ -166,7 +166,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
-            with hold_lock(build_lock_file(folder, packages)) as lock:
+            with hold_lock(compilation_lock_file(folder, packages)) as lock:
                 if lock is not None:
                     _report_compilation()
                     workers = _start_compilers(folder, packages, modules, lock)
@@ -174,7 +174,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
         if time.monotonic() > last_report + _REPORT_INTERVAL:
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
-                if far := build_lock_file(folder, packages).read_text():
+                if far := compilation_lock_file(folder, packages).read_text():
                     report_compilation_progress(
                         f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far"
                     )
@@ -190,7 +190,7 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"
     if folder is not None and not any(any(place.glob(begins)) for place in (folder, *read_only_folders())):
-        with hold_lock(build_lock_file(folder, packages)) as lock:
+        with hold_lock(compilation_lock_file(folder, packages)) as lock:
             if lock is not None:
                 _ahead[packages] = _start_compilers(folder, packages, modules, lock)
 
@@ -234,12 +234,12 @@ def _start_compilers(folder: Path, packages: str, modules: Iterable[str], lock: 
     return started
 
 
-def build_lock_file(folder: Path, packages: str) -> Path:
+def compilation_lock_file(folder: Path, packages: str) -> Path:
     """Return the file that is locked while kernels in packages are compiled, and that records the progress."""
     return folder / f"{packages.replace(' ', '+')}.building"
 
 
-def awaited_files(folder: Path) -> list[str]:
+def awaited_file_names(folder: Path) -> list[str]:
     """Return the names of the files that processes wait for, or waited for, in order."""
     try:
         return (folder / "wanted").read_text().split()

@@ -170,7 +170,7 @@ def choose_folder() -> Chosen:
     readable: list[Path] = []
     for place in _candidate_folders():
         folder = place / "kernels"
-        reason = _refusal(folder)
+        reason = _refusal_reason(folder)
         if reason is None:
             return Chosen(folder, not any(folder.iterdir()), "; ".join(refused), tuple(readable))
         refused.append(f"{place} {reason}")
@@ -206,7 +206,7 @@ def _temp_folder() -> Path:
         return Path("/tmp")
 
 
-def _refusal(folder: Path) -> str | None:
+def _refusal_reason(folder: Path) -> str | None:
     """Return why kernels cannot be stored in a folder: it is not writable, or other users could put theirs there."""
     place = folder.parent
     try:

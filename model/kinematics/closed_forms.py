@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..kernel.kernel import Row, Table, kernel
 from .geometry import is_in_line, least_transmission_angle, outer_dead_centre, stroke, time_ratio
 
@@ -98,7 +98,7 @@ def evaluate_closed_form(kind: ClosedForm, designs: Array, *, gradients: bool = 
             int(kind), designs[begin:end], values[begin:end], slopes[begin:end] if gradients else slopes
         )
 
-    in_chunks(n, work, size=4096)
+    run_in_chunks(n, work, size=4096)
     if kind == ClosedForm.ROD_TO_OFFSET:
         values[is_in_line(designs[:, 1], designs[:, 2])] = np.inf
     return values, slopes if gradients else None

@@ -21,7 +21,7 @@ from ..arrays import Array
 from ..checks import store_as_tuples
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
-from ..kernel.batches import in_chunks, require_full_rotation
+from ..kernel.batches import require_full_rotation, run_in_chunks
 from ..kernel.kernel import Row, Table, rarely_used_kernel
 from .position import motion
 
@@ -288,7 +288,7 @@ def fit_target_motion(target: TargetMotion, branch: float, measure: Measure, des
     angles, positions = np.array(target.crank_angles), np.array(target.positions)
     free = target.phase == "free", target.shift == "free"
     out = np.empty((len(designs), 3))
-    in_chunks(
+    run_in_chunks(
         len(designs),
         lambda begin, end: _fill_fits(
             designs[begin:end], branch, angles, positions, measure == "rms", free[0], free[1], out[begin:end]

@@ -88,7 +88,7 @@ def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution:
     theta = np.arctan2(e, x) + (half if solution == "inward" else -half)
     # Zero where the rod is normal to the slider line: there both branches meet and neither moves.
     l_cos = linkage.sign * (x - r * np.cos(theta))
-    _refuse_positions(
+    _raise_for_wrong_positions(
         l_cos <= 0.0,
         x,
         dimensions,
@@ -120,7 +120,7 @@ def crank_motion(
     x, dimensions, d = _reachable_positions(linkage, slider_position)
     r, l, _ = dimensions
     margin = np.minimum(r + l - d, d - np.abs(l - r))
-    _refuse_positions(
+    _raise_for_wrong_positions(
         margin <= ROUNDING * (r + l),
         x,
         dimensions,
@@ -146,7 +146,7 @@ def _reachable_positions(
     d = np.hypot(x, e)
     excess = np.maximum(d - (r + l), np.abs(l - r) - d)
     # A position computed for a dead centre may lie a rounding error beyond it.
-    _refuse_positions(
+    _raise_for_wrong_positions(
         (excess > ROUNDING * (r + l)) | (d == 0.0),
         x,
         (r, l, e),
@@ -169,7 +169,7 @@ def require_finite(name: str, value: ArrayLike) -> Array:
     return array
 
 
-def _refuse_positions(
+def _raise_for_wrong_positions(
     wrong: Mask,
     x: Array,
     dimensions: tuple[Array, Array, Array],

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
-from ..errors import LONGEST, AssemblyError, InputError, reading_in_both_units
+from ..errors import LONGEST, AssemblyError, InputError, number_in_si_and_usual_unit
 from ..kinematics.geometry import is_in_line
 from .dimensions import DIMENSIONS
 
@@ -88,7 +88,7 @@ def implausible_length_text(lengths: Iterable[Array], longest: Iterable[float] =
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
         is_too_long = np.isfinite(size) & (np.abs(size) > limit)
         if np.any(is_too_long):
-            return reading_in_both_units(name, first_marked_value(size, is_too_long), "m", "mm", 1e3)
+            return number_in_si_and_usual_unit(name, first_marked_value(size, is_too_long), "m", "mm", 1e3)
     return None
 
 

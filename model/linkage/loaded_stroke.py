@@ -45,7 +45,7 @@ def _work_against_strokes(mechanism: Mechanism, dimensions: Array) -> Array:
     for row, outward in enumerate((True, False)):
         passage = _passage_of_stroke(linkage, outward=outward, direction=mechanism.direction)
         for load in mechanism.loads:
-            work[row] -= load.stroke_work(passage)
+            work[row] -= load.work_deciding_loaded_stroke(passage)
     return work
 
 

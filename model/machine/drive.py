@@ -55,7 +55,7 @@ class LinearMotor:
         require_numbers(self, "stall_torque", "no_load_speed", above=0.0)
 
     @classmethod
-    def through(cls, *, torque: float, speed: float, no_load_speed: float) -> LinearMotor:
+    def from_rated_point(cls, *, torque: float, speed: float, no_load_speed: float) -> LinearMotor:
         """Return the line through a rated point (torque, N m, at speed, rad/s) and the no-load speed, rad/s."""
         if not (0.0 <= speed < no_load_speed < math.inf and 0.0 < torque < math.inf):
             raise InputError(
@@ -106,18 +106,18 @@ class TorqueTable:
             )
 
     @cached_property
-    def _curve(self) -> Any:
+    def _torque_spline(self) -> Any:
         from scipy.interpolate import PchipInterpolator
 
         return PchipInterpolator(self.speeds, self.torques, extrapolate=False)
 
     def torque_at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s; NaN beyond the table."""
-        return self._curve(speed)[()]
+        return self._torque_spline(speed)[()]
 
     def torque_slope(self, speed: ArrayLike) -> Any:
         """Return the torque's derivative with respect to speed, N m s; NaN beyond the table."""
-        return self._curve(speed, 1)[()]
+        return self._torque_spline(speed, 1)[()]
 
 
 Motor = ConstantTorque | LinearMotor | TorqueTable
@@ -171,19 +171,19 @@ class Drive:
         return self.flywheel + self.gear_ratio**2 * self.motor_inertia
 
     @property
-    def is_lossy(self) -> bool:
+    def has_gear_losses(self) -> bool:
         """Whether the gear loses part of the power, in either direction."""
         return self.gear_efficiency < 1.0 or (self.braking_efficiency or 1.0) < 1.0
 
     @property
-    def torque_law(self) -> Motor:
+    def motor_torque_law(self) -> Motor:
         """The motor's torque against its speed. Raises `InputError` if there is no motor, or if the gear has losses."""
         if self.motor is None:
             raise InputError(
                 "a machine driven by its motor needs a motor torque; got a drive without one; for example, add "
                 '[drive] motor = { stall_torque = "60 N m", no_load_speed = "400 rpm" }'
             )
-        if self.is_lossy:
+        if self.has_gear_losses:
             raise InputError(
                 "a machine driven by its motor needs a gear without losses; got a gear efficiency below 1; leave "
                 "it out, and reduce the torque of the motor instead"
@@ -195,7 +195,7 @@ class Drive:
         """Gear, inertias and limits of the motor, as far as stated."""
         braking = self.gear_efficiency if self.braking_efficiency is None else self.braking_efficiency
         parts = [f"gear ratio {self.gear_ratio:.6g}"]
-        if self.is_lossy:
+        if self.has_gear_losses:
             parts.append(f"efficiency {self.gear_efficiency:.6g} driving, {braking:.6g} braking")
         if self.motor_inertia:
             parts.append(f"rotor {self.motor_inertia:.6g} kg m^2")
@@ -219,12 +219,12 @@ class Drive:
         direction: +1 or -1, direction in which the motor is intended to turn the crank.
         """
         speed = direction * self.gear_ratio * np.asarray(crank_speed)
-        return np.asarray(direction * self.gear_ratio * self.torque_law.torque_at(speed))
+        return np.asarray(direction * self.gear_ratio * self.motor_torque_law.torque_at(speed))
 
 
 def speed_range(drive: Drive) -> tuple[float, float]:
     """Return the minimum and maximum crank speed, rad/s in the motor's direction, at which its torque is known."""
-    law = drive.torque_law
+    law = drive.motor_torque_law
     if not isinstance(law, TorqueTable):
         return -math.inf, math.inf
     return law.speeds[0] / drive.gear_ratio, law.speeds[-1] / drive.gear_ratio

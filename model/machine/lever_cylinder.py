@@ -95,7 +95,7 @@ class Cylinder:
                 'stroke, or for a barrel that extends beyond its pivot set mounting = "trunnion"'
             )
 
-    def closed_and_stroke(self, travel: float) -> tuple[float, float] | None:
+    def closed_length_and_stroke(self, travel: float) -> tuple[float, float] | None:
         """Return closed length and stroke, m; with a dead length alone, those of a cylinder for a travel, m.
 
         None if neither is known.
@@ -124,7 +124,7 @@ class Cylinder:
 
     def require_lengths(self, shortest: float, longest: float, remedy: str) -> None:
         """Raise `InputError` unless the cylinder has all lengths between two, m. remedy: last part of the sentence."""
-        known = self.closed_and_stroke(longest - shortest)
+        known = self.closed_length_and_stroke(longest - shortest)
         if known is None:
             return
         closed_length, open_length = known[0], sum(known)
@@ -159,7 +159,7 @@ class Cylinder:
                     "enlarge the bore, or move a pivot"
                 )
 
-    def require_stiffness(self, margin: float, length: float) -> None:
+    def require_no_buckling(self, margin: float, length: float) -> None:
         """Raise `InputError` for a margin against buckling below 1, which occurs at a length, m."""
         if self.rod is None or margin >= 1.0 - _ROUNDING:
             return
@@ -180,7 +180,7 @@ class Cylinder:
         """
         if self.rod is None:
             return None
-        load = buckling_number(self.rod, self.modulus) / length**2
+        load = euler_load_times_squared_length(self.rod, self.modulus) / length**2
         margin: Array = np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)
         return margin
 
@@ -190,7 +190,7 @@ def piston_areas(bore: Any, rod: Any) -> tuple[Any, Any]:
     return 0.25 * math.pi * bore * bore, 0.25 * math.pi * (bore * bore - rod * rod)
 
 
-def buckling_number(rod: Any, modulus: float) -> Any:
+def euler_load_times_squared_length(rod: Any, modulus: float) -> Any:
     """Return Euler's load times length^2, N m^2; see `Cylinder.buckling_margin`."""
     return math.pi**2 * modulus * (math.pi * rod**4 / 64.0)
 

@@ -17,7 +17,7 @@ from .lever import Lever, require_lever_alone
 from .loads.load import During, Load, require_word
 from .loads.load_text import join_range_ends
 from .speed_profile import Profile
-from .varying_numbers import Varying, require_valid_variables, with_values
+from .varying_numbers import Varying, require_valid_variables, with_variable_values
 
 Criterion = Literal["goodman", "soderberg"]
 
@@ -137,7 +137,7 @@ class Tolerance:
     def __post_init__(self) -> None:
         require_numbers(self, "absolute", "fraction", phrase="the {} part of a tolerance", least=0.0)
 
-    def limit(self, length: float) -> float:
+    def deviation_limit(self, length: float) -> float:
         """Return the maximum deviation of a length, m, from its nominal value, m."""
         return self.absolute + self.fraction * abs(length)
 
@@ -320,5 +320,5 @@ class Mechanism:
 
     def with_values(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, for its variables (k,)."""
-        machine: Mechanism = with_values(self.nominal, self.varying, values)
+        machine: Mechanism = with_variable_values(self.nominal, self.varying, values)
         return machine

@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
 from .clearance import Bar, Link
-from .cylinder_machines import require_one_turn
+from .cylinders_as_machines import require_one_turn
 from .loads.load import Load
 from .loads.registry import kernel_code_of_load
 from .loads.stroke_force import StrokeForce
@@ -130,7 +130,7 @@ def _stroke_and_crank_factors(load: Load) -> tuple[float, float, float]:
 
 
 @memoise_by_machine
-def knot_count(mechanism: Mechanism) -> int:
+def load_knot_count(mechanism: Mechanism) -> int:
     """Return the number of knots in the tables of a mechanism's loads."""
     return sum(len(load.knots()[0]) for load in mechanism.loads)
 
@@ -144,7 +144,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
     start = [0]
     for load in mechanism.loads:
         places, forces = load.knots()
-        back = mechanism.direction < 0.0 and load.has_knots_along_rotation
+        back = mechanism.direction < 0.0 and load.has_knots_in_sense_of_rotation
         at.extend([-place for place in reversed(places)] if back else places)
         force.extend(reversed(forces) if back else forces)
         start.append(len(at))

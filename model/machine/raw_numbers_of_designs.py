@@ -3,8 +3,8 @@
 A design of a machine with k variables has 3 + k numbers: crank, rod, offset and the value of each variable. Kernels
 overwrite raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by
 radius and angle, but its raw numbers are components. Kernels differentiate by the raw numbers;
-`RawNumbers.chain_to_designs` converts these to derivatives with respect to the design's own numbers. With k = 0 this is
-the identity and costs nothing.
+`RawNumbers.gradients_by_design_numbers` converts these to derivatives with respect to the design's own numbers. With k
+= 0 this is the identity and costs nothing.
 """
 
 import re
@@ -22,7 +22,7 @@ from .loads.registry import load_classes
 from .mechanism import Mechanism
 from .memoise import memoise_by_batch, memoise_by_machine
 from .raw_machine_vector import LOAD_SLOTS, Raw, raw_vector
-from .varying_numbers import Varying, number_at
+from .varying_numbers import Varying, number_at_path
 
 _LINK = {
     "width": (0, "m"),
@@ -102,11 +102,11 @@ _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 def unit_of_number(path: str) -> str:
     """Return the SI unit of a number in a machine. Raises `InputError` for a number that designs cannot set."""
-    return _POLAR[path] if path in _POLAR else _slot_of(path)[1]
+    return _POLAR[path] if path in _POLAR else _slot_and_unit_of_path(path)[1]
 
 
 @cache
-def _slot_of(path: str) -> tuple[int, str]:
+def _slot_and_unit_of_path(path: str) -> tuple[int, str]:
     load = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
     if load is not None and load[2] in _LOAD:
         slot, unit = _LOAD[load[2]]
@@ -128,7 +128,7 @@ class RawNumbers:
     values: Array
     slopes: Array | None
 
-    def chain_to_designs(self, gradients: Array) -> Array:
+    def gradients_by_design_numbers(self, gradients: Array) -> Array:
         """Convert derivatives with respect to raw numbers, (n, ..., c), to the design's own, (n, ..., 3 + k)."""
         if self.slopes is None:
             return gradients
@@ -201,7 +201,7 @@ def evaluate_formula_of_raw_numbers(
             set_numbers[slot] = set_numbers[slot] + 1j * STEP
             by_number[:, place] = np.imag(formula(number)) / STEP
             set_numbers[slot] = set_numbers[slot].real
-    return plain, numbers.chain_to_designs(by_number)
+    return plain, numbers.gradients_by_design_numbers(by_number)
 
 
 def nominal_raw_number(mechanism: Mechanism, slot: int) -> float:
@@ -211,7 +211,7 @@ def nominal_raw_number(mechanism: Mechanism, slot: int) -> float:
     for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE), (mechanism.lever, LEVER)):
         for name, place in slots.items():
             if place == slot:
-                number: Any = number_at(owner, name)
+                number: Any = number_at_path(owner, name)
                 return float(number)
     return float(_nominal_numbers(mechanism)[slot])
 
@@ -239,7 +239,9 @@ def _raw_number_slopes(varying: tuple[Varying, ...]) -> dict[int, tuple[float, .
         for path, factor in item.sets:
             if path in _POLAR:
                 return None
-            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # rounded as a complex step would
+            rates[_slot_and_unit_of_path(path)[0]] = {
+                3 + column: factor * STEP / STEP
+            }  # rounded as a complex step would
     count = 3 + len(varying)
     return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 
@@ -253,7 +255,7 @@ def raw_numbers_by_slot(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
             if path in _POLAR:
                 polar[path] = factor * designs[:, 3 + column]
             else:
-                by_slot[_slot_of(path)[0]] = factor * designs[:, 3 + column]
+                by_slot[_slot_and_unit_of_path(path)[0]] = factor * designs[:, 3 + column]
     if polar:
         weight = mechanism.counterweight
         radius = polar.get("counterweight.radius", weight.radius)

@@ -61,11 +61,11 @@ class ElapsedTime:
         return cls(np.asarray(panels, dtype=np.float64), series, np.concatenate([[0.0], np.cumsum(panel_integrals)]))
 
     @property
-    def full_turn(self) -> float:
+    def elapsed_over_full_turn(self) -> float:
         """Integral over a turn."""
         return float(self.up_to_ends[-1])
 
-    def up_to(self, crank_angle: Array) -> Array:
+    def elapsed_up_to(self, crank_angle: Array) -> Array:
         """Return the integral from the start of the first panel up to crank angles, rad, over any number of turns."""
         turns = np.floor((crank_angle - self.ends[0]) / _TURN)
         angle_in_turn = crank_angle - turns * _TURN
@@ -73,7 +73,7 @@ class ElapsedTime:
         low, high = self.ends[panel], self.ends[panel + 1]
         x = np.clip(2.0 * (angle_in_turn - low) / (high - low) - 1.0, -1.0, 1.0)
         within_panel = legendre.legval(x, self.series[:, panel], tensor=False)
-        return np.asarray(turns * self.full_turn + self.up_to_ends[panel] + within_panel)
+        return np.asarray(turns * self.elapsed_over_full_turn + self.up_to_ends[panel] + within_panel)
 
 
 _RPM = 30.0 / math.pi
@@ -141,7 +141,7 @@ class Harmonics:
     @property
     def time_mean_over_angle_mean(self) -> float:
         """Mean speed over time divided by the mean over the crank angle."""
-        return _TURN / self.elapsed_time.full_turn
+        return _TURN / self.elapsed_time.elapsed_over_full_turn
 
     @property
     def coefficient_pairs(self) -> list[tuple[float, float]]:
@@ -247,7 +247,7 @@ class SpeedTable:
     @property
     def time_mean_over_angle_mean(self) -> float:
         """Mean speed over time divided by the mean over the crank angle."""
-        return _TURN / self.elapsed_time.full_turn
+        return _TURN / self.elapsed_time.elapsed_over_full_turn
 
     @property
     def spline_pieces(self) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ class Varying:
     each with its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is the factor
     times the value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
     lower, upper: bounds of the value, SI; equal bounds fix it. idle: whether it sets nothing, because it belongs to the
-    other turn of the cycle (`cylinder_machines`).
+    other turn of the cycle (`machine_of_each_cylinder`).
     """
 
     name: str
@@ -47,21 +47,21 @@ class Varying:
         return tuple(path for path, _ in self.sets)
 
 
-def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
+def with_variable_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
     """Return a machine (any frozen dataclass) with its variables set to these values."""
     if len(varying) != len(values):
         names = ", ".join(item.name for item in varying) or "none"
         raise InputError(f"every variable needs a value ({names}); got {len(values)} values")
     for item, value in zip(varying, values, strict=True):
         for path, factor in item.sets:
-            part = _replace_at(part, path.split("."), factor * float(value), path)
+            part = _replace_number_at_path(part, path.split("."), factor * float(value), path)
     return part
 
 
-def number_at(part: Any, path: str) -> float | None:
+def number_at_path(part: Any, path: str) -> float | None:
     """Return the number at a dotted path in a machine; None if a link uses its default. Raises `InputError`."""
     for key in path.split("."):
-        part = _member_at(part, key, path)
+        part = _field_or_item_of_part(part, key, path)
     if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):
         raise InputError(f"a variable must be a number of the machine; got {path!r}, which is not one")
     return part
@@ -72,7 +72,7 @@ def require_valid_variables(mechanism: Any) -> None:
     varying: tuple[Varying, ...] = mechanism.varying
     paths = [path for item in varying for path in item.paths]
     for path in paths:
-        number_at(mechanism, path)
+        number_at_path(mechanism, path)
         if paths.count(path) > 1:
             raise InputError(f"a number may only be set by one variable; got {path} twice; leave out one of the two")
     names = [item.name for item in varying]
@@ -104,7 +104,7 @@ def _require_valid_corners(load: Any, prefix: str, varying: Sequence[Varying]) -
         replace(load, **dict(itertools.chain(*corner)))
 
 
-def _member_at(part: Any, key: str, path: str) -> Any:
+def _field_or_item_of_part(part: Any, key: str, path: str) -> Any:
     if isinstance(part, tuple) and key.isdecimal() and int(key) < len(part):
         return part[int(key)]
     if is_dataclass(part) and key in {field.name for field in fields(part)}:
@@ -112,10 +112,10 @@ def _member_at(part: Any, key: str, path: str) -> Any:
     raise InputError(f"a variable must be a number of the machine; got {path!r}, which it does not have")
 
 
-def _replace_at(part: Any, keys: list[str], number: float, path: str) -> Any:
+def _replace_number_at_path(part: Any, keys: list[str], number: float, path: str) -> Any:
     if not keys:
         return number
-    inner = _replace_at(_member_at(part, keys[0], path), keys[1:], number, path)
+    inner = _replace_number_at_path(_field_or_item_of_part(part, keys[0], path), keys[1:], number, path)
     if isinstance(part, tuple):
         index = int(keys[0])
         return (*part[:index], inner, *part[index + 1 :])

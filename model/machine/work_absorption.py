@@ -28,7 +28,7 @@ def may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
     """
     return any(
         machine.acceleration != 0.0 or _has_friction(machine) or _loads_do_net_work(machine)
-        for machine in _trial_machines(mechanism)
+        for machine in _machines_at_generic_values(mechanism)
     )
 
 
@@ -37,11 +37,11 @@ def loads_may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
 
     See `may_do_work_over_a_turn`.
     """
-    return any(map(_loads_do_net_work, _trial_machines(mechanism)))
+    return any(map(_loads_do_net_work, _machines_at_generic_values(mechanism)))
 
 
 @memoise_by_machine
-def with_loads_alone(mechanism: Mechanism) -> Mechanism:
+def without_masses_and_friction(mechanism: Mechanism) -> Mechanism:
     """Return the machine without masses and friction: all work from its drive goes into the loads."""
     nothing = RigidLink(mass=0.0)
     of_loads = {"loads", "speed", "speed_profile"}
@@ -64,7 +64,7 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
 
 def has_friction_under_load(mechanism: Mechanism) -> bool:
     """Return whether friction acts in a joint that carries a force, for some design."""
-    return any(map(_has_friction, _trial_machines(mechanism)))
+    return any(map(_has_friction, _machines_at_generic_values(mechanism)))
 
 
 def carries_linkage_forces(machine: Mechanism) -> bool:
@@ -130,7 +130,7 @@ def _has_friction(machine: Mechanism) -> bool:
     )
 
 
-def _trial_machines(mechanism: Mechanism) -> list[Mechanism]:
+def _machines_at_generic_values(mechanism: Mechanism) -> list[Mechanism]:
     """Return the machine or, if it has variables, two machines with values that are not special."""
     if not mechanism.varying:
         return [mechanism]

@@ -21,7 +21,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
-from ..machine.cylinder_machines import cycle_turns
+from ..machine.cylinders_as_machines import cycle_turns
 from ..machine.mechanism import Mechanism
 from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, WEIGHTS
 from ..transient.crank_equation import TURN, CrankEquation
@@ -109,7 +109,7 @@ class LawTurn:
         return self._turn.low
 
     @property
-    def load_work(self) -> float:
+    def work_absorbed_by_loads(self) -> float:
         """Work that the loads absorb in a turn, J; gravity absorbs none."""
         return float(np.sum(self.angle_weights * self.terms.load))
 

@@ -40,9 +40,9 @@ class MotionLaw:
     start_energy: float
 
     @classmethod
-    def made_periodic(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
+    def from_torque_made_periodic(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
         """Return the law with a constant torque added that makes it repeat."""
-        excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.load_work
+        excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.work_absorbed_by_loads
         return cls(turn, torque - excess / float(turn.width.sum()), start_energy)
 
     @cached_property
@@ -186,7 +186,7 @@ class CamTable:
     acceleration: Array
 
 
-def cam_table(law: MotionLaw, intervals: int = POINTS) -> CamTable:
+def cam_table_of_turn(law: MotionLaw, intervals: int = POINTS) -> CamTable:
     """Return the table at the ends of all cells and at equal parts of the longest cells."""
     turn = law.turn
     parts = np.maximum(1, np.ceil(turn.width * intervals / TURN)).astype(np.int64)

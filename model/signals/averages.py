@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
+from ..machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.work_absorption import may_do_work_over_a_turn
@@ -84,7 +84,7 @@ def signal_averages(mechanism: Mechanism, kind: Signal, designs: Array, *, gradi
 def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
     """Return memoised averages: one batch is evaluated for mean and RMS torque, power, energy and more."""
     designs = require_full_rotation(designs)
-    if is_treated_as_shaft(mechanism):
+    if has_cylinders_or_speed_profile(mechanism):
         return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (

@@ -17,7 +17,7 @@ from ..dynamics.torque_with_friction import (
     rotation_sense,
     torque_without_crank_loads,
 )
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, rarely_used_kernel
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
@@ -85,6 +85,6 @@ def complex_joint_forces(
     def work(begin: int, end: int) -> None:
         _fill_forces(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
 
-    in_chunks(len(designs), work, size=64)
+    run_in_chunks(len(designs), work, size=64)
     *forces, load = out.swapaxes(0, 1)
     return Forces(*forces), load

@@ -18,9 +18,9 @@ from ..arrays import Array
 from ..dynamics.segments import crowding_parameter
 from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..kernel.arithmetic import STEP, analytic, inverse, root
-from ..kernel.batches import in_chunks, require_full_rotation
+from ..kernel.batches import require_full_rotation, run_in_chunks
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.cylinder_machines import is_treated_as_shaft, machine_of_first_turn
+from ..machine.cylinders_as_machines import has_cylinders_or_speed_profile, machine_of_first_turn
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
@@ -96,11 +96,11 @@ class _Tops(NamedTuple):
 
 
 @memoise_by_machine
-def is_supported(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
+def supports_screening(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
     """Whether `screened_maxima` supports this signal for this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
-    watch, shaft = cycle_window(mechanism, kind, during=during), is_treated_as_shaft(mechanism)
+    watch, shaft = cycle_window(mechanism, kind, during=during), has_cylinders_or_speed_profile(mechanism)
     mechanism = mechanism.with_largest_variables
     full_cycle = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
@@ -134,7 +134,7 @@ def _crank_sine_and_cosine(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: An
 
 
 @analytic
-def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
+def _signal_at_crowded_angle(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
     """Value at one tau, real or complex."""
     sine, cosine = _crank_sine_and_cosine(sine_tau, cosine_tau, True, kappa)
     return _signal_value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
@@ -143,7 +143,7 @@ def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direct
 @analytic
 def _value_and_slope(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any) -> Any:
     """Value and slope over the crowded angle."""
-    z = _curve(kind, complex(sine, cosine * STEP), complex(cosine, -sine * STEP), kappa, d, direction)
+    z = _signal_at_crowded_angle(kind, complex(sine, cosine * STEP), complex(cosine, -sine * STEP), kappa, d, direction)
     return z.real, z.imag * (1.0 / STEP)
 
 
@@ -300,7 +300,7 @@ def _fill_gradients(task: Screening, lanes: _Lanes, raw: Any, peaks: Any, worksp
 
 
 @kernel
-def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) -> None:
+def _screen_designs(task: Screening, designs: Table, first: int, out: ScreenedArrays) -> None:
     n, signals, angles = designs.shape[0], task.kinds.shape[0], task.angles
     rows = DESIGN + LOAD_ROWS * task.load_kind.shape[0]
     raw = np.empty((task.raw.shape[0], LANES))
@@ -358,9 +358,9 @@ def screened_maxima(
 
     The k additional columns are the values of the machine's variables.
 
-    kinds: signals that `is_supported` accepts; they are evaluated together and share the motion. places, still: whether
-    to return these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples
-    where the linkage is close to locking.
+    kinds: signals that `supports_screening` accepts; they are evaluated together and share the motion. places, still:
+    whether to return these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate
+    samples where the linkage is close to locking.
     """
     designs = require_full_rotation(designs)
     n, signals = len(designs), len(kinds)
@@ -375,10 +375,12 @@ def screened_maxima(
     out = ScreenedArrays(values, peak_angles, standing, slopes)
 
     def work(begin: int, end: int) -> None:
-        _screen(task, designs[begin:end], begin, out)
+        _screen_designs(task, designs[begin:end], begin, out)
 
-    in_chunks(n, work, size=16 * LANES)
+    run_in_chunks(n, work, size=16 * LANES)
     return tuple(
-        Screened(values[q], peak_angles[q], standing, numbers.chain_to_designs(slopes[q]) if gradients else None)
+        Screened(
+            values[q], peak_angles[q], standing, numbers.gradients_by_design_numbers(slopes[q]) if gradients else None
+        )
         for q in range(signals)
     )

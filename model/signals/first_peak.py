@@ -3,9 +3,9 @@
 import numpy as np
 
 from ..arrays import Array
-from ..machine.cylinder_machines import TURN, cycle_turns
+from ..machine.cylinders_as_machines import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
-from .panel_polynomials import angle_in_cycle, index_of_first_maximum
+from .panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from .peaks import find_peaks
 from .signals import Signal
 
@@ -21,4 +21,4 @@ def first_peaks(mechanism: Mechanism, kind: Signal, designs: Array) -> tuple[Arr
     period = cycle_turns(mechanism) * TURN
     first = index_of_first_maximum(peaks.values, peaks.angles, period)
     angles = np.take_along_axis(peaks.angles, first[:, None], axis=1)[:, 0]
-    return peaks.values[:, 0], np.array([angle_in_cycle(angle, period) for angle in angles.tolist()])
+    return peaks.values[:, 0], np.array([wrap_into_cycle(angle, period) for angle in angles.tolist()])

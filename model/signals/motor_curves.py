@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import in_chunks, require_full_rotation
-from ..machine.cylinder_machines import cylinder_count
+from ..kernel.batches import require_full_rotation, run_in_chunks
+from ..machine.cylinders_as_machines import cylinder_count
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.raw_machine_vector import Raw, knot_count
+from ..machine.raw_machine_vector import Raw, load_knot_count
 from ..machine.raw_numbers_of_designs import DRIVE, raw_number_at_slot
 from .peaks import Peaks
 from .shaft import Shaft
@@ -79,7 +79,7 @@ class MotorShaft(Shaft):
         super().__init__(mechanism, int(Signal.TORQUE), designs, members=members, gradients=gradients)
         self.curve, self._direction = curve, mechanism.direction
         drive = _required_drive(mechanism)
-        self._lossy = drive.is_lossy or any(_EFFICIENCIES & {*item.paths} for item in mechanism.varying)
+        self._lossy = drive.has_gear_losses or any(_EFFICIENCIES & {*item.paths} for item in mechanism.varying)
         self._train = _drive_train_numbers(mechanism, drive, designs)
 
     def evaluate(
@@ -95,8 +95,8 @@ class MotorShaft(Shaft):
         """
         out = super().breakpoint_gradients(cuts, probe)
         for code, curve in _KINKS.items():
-            rows = np.flatnonzero(self.breaks.code[cuts] == code)
-            row, angle = self.breaks.row[cuts[rows]], self.breaks.angle[cuts[rows], None]
+            rows = np.flatnonzero(self.all_breakpoints.code[cuts] == code)
+            row, angle = self.all_breakpoints.row[cuts[rows]], self.all_breakpoints.angle[cuts[rows], None]
             slopes = self._motor_curve(curve, row, probe[rows], angle, None, True)[0][:, 0]
             out[rows] = -slopes[:, 2:] / slopes[:, 1:2]
         return out
@@ -107,11 +107,11 @@ class MotorShaft(Shaft):
         codes = ([GEAR] if self._lossy else []) + ([SUPPLY] if self.curve is MotorCurve.DRAWN else [])
         for code in codes:
             breaks = join_breaks(
-                [breaks, self.sign_change_breakpoints(breaks, partial(self._values, _KINKS[code]), code)]
+                [breaks, self.sign_change_breakpoints(breaks, partial(self._motor_curve_values, _KINKS[code]), code)]
             )
         return breaks
 
-    def _values(self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array) -> Array:
+    def _motor_curve_values(self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array) -> Array:
         return self._motor_curve(curve, row, probe, angle, None, False)[0][:, :, 0]
 
     def _motor_curve(
@@ -213,7 +213,7 @@ def motor_peaks(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradien
         if slopes is not None:
             slopes[begin:end] = peaks[2]
 
-    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
+    run_in_chunks(len(designs), work, size=_CHUNK, knots=load_knot_count(mechanism))
     return Peaks(values, angles, slopes)
 
 
@@ -251,5 +251,5 @@ def motor_averages(mechanism: Mechanism, designs: Array, curve: MotorCurve, grad
             )
             slopes[1, begin:end] = half[:, None] * means.gradients[SQUARE_OVER_TIME]
 
-    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
+    run_in_chunks(len(designs), work, size=_CHUNK, knots=load_knot_count(mechanism))
     return MotorAverages(values[0], values[1], slopes[0] if gradients else None, slopes[1] if gradients else None)

@@ -56,7 +56,7 @@ def index_of_first_maximum(values: Array, angles: Array, period: float) -> IntAr
     return np.asarray(np.argmax(np.where(same, values, -np.inf), axis=-1))
 
 
-def angle_in_cycle(angle: float, period: float) -> float:
+def wrap_into_cycle(angle: float, period: float) -> float:
     """Return a crank angle wrapped into the cycle, rad; an angle that differs from zero by rounding is zero."""
     turned = angle % period
     return 0.0 if period - turned < _ZERO else turned

@@ -150,7 +150,7 @@ class _Search:
     counted: Mask
     signed: bool
 
-    def signed_as_judged(self, curve: Array) -> Array:
+    def negated_where_magnitude_counts(self, curve: Array) -> Array:
         """Return the curve (..., c) with derivatives, negated where its magnitude counts and its value is negative."""
         return curve if self.signed else np.asarray(np.where(curve[..., :1] < 0.0, -curve, curve))
 
@@ -166,7 +166,7 @@ class _Search:
             curve, sizes = self.curve.evaluate(row, probe, place)
             np.maximum.at(size, row, sizes.max(axis=1, initial=0.0))
             rough: Mask = last_coefficients_magnitude(curve[:, 1:-1, 0]) > _ROUGH * size[row]
-            return rough, [place, self.signed_as_judged(curve)]
+            return rough, [place, self.negated_where_magnitude_counts(curve)]
 
         panels = resolve_panels(sample, low, width, row, probe, segment, deepest=_DEEPEST)
         _, _, row, probe, segment, place, curve = panels
@@ -211,7 +211,7 @@ class _Search:
 
         def slope(brackets: IntArray, trial: Array) -> Array:
             evaluated = self.curve.evaluate(row[brackets], probe[brackets], trial[:, None])[0][:, 0, :2]
-            curve = self.signed_as_judged(evaluated)
+            curve = self.negated_where_magnitude_counts(evaluated)
             value[brackets] = curve[:, 0]
             return np.asarray(curve[:, 1])
 
@@ -223,7 +223,7 @@ class _Search:
         n = len(live)
         edge = np.full((n + 1, 2, 2), -np.inf)  # the last one belongs to no segment
         ends = np.stack([segments.low[live], segments.high[live]], axis=1)
-        edge[:-1][live] = self.signed_as_judged(
+        edge[:-1][live] = self.negated_where_magnitude_counts(
             self.curve.evaluate(segments.row[live], segments.probe[live], ends)[0][..., :2]
         )
         first = np.setdiff1d(np.arange(n), segments.next_segment)
@@ -258,7 +258,9 @@ class _Search:
         at = begins[moves]
         rate[moves] = self.curve.breakpoint_gradients(segments.cut[at], segments.probe[at])
         probe, place = segments.probe[tops.segment], tops.place[:, None]
-        curve = self.signed_as_judged(self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0])
+        curve = self.negated_where_magnitude_counts(
+            self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0]
+        )
         return np.asarray(curve[:, 2:])
 
 

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.torque_with_friction import needs_friction_kernel
-from ..kernel.batches import in_chunks, require_full_rotation
-from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
+from ..kernel.batches import require_full_rotation, run_in_chunks
+from ..machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
 from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
+from .shaft_statistics import equivalent_single_cranks, merge_highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 from .turn_peaks import TurnTask, find_turn_peaks
@@ -57,13 +57,13 @@ def find_peaks(
     `shaft_statistics` describes how several cylinders and a speed profile are included.
     """
     designs = require_full_rotation(designs)
-    if is_treated_as_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
+    if has_cylinders_or_speed_profile(mechanism) or kind is Signal.ROCKING_COUPLE:
         parts = [
             find_peaks(crank, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
             for crank in equivalent_single_cranks(mechanism, kind)
         ]
         if parts:
-            return Peaks(*highest_peaks([(part.values, part.angles, part.gradients) for part in parts]))
+            return Peaks(*merge_highest_peaks([(part.values, part.angles, part.gradients) for part in parts]))
         return Peaks(*shaft_signal_peaks(mechanism, kind, designs, during=during, gradients=gradients, limit=limit))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
@@ -85,5 +85,5 @@ def find_peaks(
         part = slice(begin, end)
         find_turn_peaks(task, blocks, steps, values[part], peak_angles[part], slopes[part] if gradients else slopes)
 
-    in_chunks(n, work, knots=len(loads.knots))
-    return Peaks(values, peak_angles, numbers.chain_to_designs(slopes) if gradients else None)
+    run_in_chunks(n, work, knots=len(loads.knots))
+    return Peaks(values, peak_angles, numbers.gradients_by_design_numbers(slopes) if gradients else None)

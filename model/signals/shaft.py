@@ -14,7 +14,13 @@ from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
 from ..dynamics.torque_with_friction import least_determinacy_margin, needs_friction_kernel
 from ..kinematics import geometry
-from ..machine.cylinder_machines import TURN, cylinder_machines, half_of_cycle_at, machines_of_turns, single_cylinder
+from ..machine.cylinders_as_machines import (
+    TURN,
+    half_of_cycle_at,
+    machine_of_each_cylinder,
+    machines_of_turns,
+    single_cylinder_machine,
+)
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
@@ -32,10 +38,10 @@ from .shaft_curves import (
     CurveArrays,
     Evaluations,
     ShaftCurve,
-    cut_rates,
+    fill_breakpoint_gradients,
     fill_curves,
 )
-from .shaft_segments import CONTACT, FIXED, Breaks, join_breaks, segments_of
+from .shaft_segments import CONTACT, FIXED, Breaks, join_breaks, segments_between_breakpoints
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
@@ -62,13 +68,13 @@ class Shaft:
     ) -> None:
         self.kind, self.members, self.gradients = kind, np.array(members, dtype=np.int64), gradients
         signal = Signal(kind) if kind < TOUCH else Signal.CRANK_PIN_FORCE
-        single = single_cylinder(mechanism)
+        single = single_cylinder_machine(mechanism)
         self._single, self._designs = single, designs
         self._parts = machines_of_turns(single) if signal.needs_forces else (single,)
         self.period = len(self._parts) * TURN
         self.vector = kind in [int(vector) for vector in VECTORS]
         self.rubbing = signal.needs_forces and needs_friction_kernel(single)
-        cylinders = cylinder_machines(mechanism)
+        cylinders = machine_of_each_cylinder(mechanism)
         lead, bank = (
             np.array([cylinder.lead for cylinder in cylinders]),
             np.array([cylinder.bank for cylinder in cylinders]),
@@ -122,7 +128,7 @@ class Shaft:
         crowd = np.array([crowding_parameter(*lengths) for lengths in zip(r, l, e, strict=True)])
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
 
-    def half_of_each_cylinder(self, angle: Array, row: IntArray) -> IntArray:
+    def cycle_half_of_each_cylinder(self, angle: Array, row: IntArray) -> IntArray:
         """Return the half (p, m) of its cycle in which every cylinder is at shaft angles (p,)."""
         if len(self._parts) < 2:
             return np.zeros((len(angle), len(self._axes.lead)), dtype=np.int64)
@@ -145,26 +151,26 @@ class Shaft:
         Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles with
         respect to the design.
         """
-        evaluated = self._evaluate(self._curve, self._evaluations(row, probe, angle, rate), gradients)
+        evaluated = self._evaluate(self._signal_curve, self._points_to_evaluate(row, probe, angle, rate), gradients)
         return evaluated.curve, evaluated.size
 
     def moves_outward(self, segments: Segments) -> Mask:
         """Return whether the slider of the first cylinder moves outward in the segments."""
-        items = self._evaluations(segments.row, segments.probe, segments.probe[:, None])
-        return np.asarray(self._evaluate(self._curve, items).outward[:, 0] == 1)
+        items = self._points_to_evaluate(segments.row, segments.probe, segments.probe[:, None])
+        return np.asarray(self._evaluate(self._signal_curve, items).outward[:, 0] == 1)
 
     @property
-    def _curve(self) -> ShaftCurve:
+    def _signal_curve(self) -> ShaftCurve:
         return ShaftCurve(self.kind, self.members, self.vector, self.rubbing)
 
     def _guide_side_curve(self, member: int) -> ShaftCurve:
         """Return the curve that has the sign of the force on a cylinder's guide."""
         return ShaftCurve(TOUCH, np.array([member]), False, self.rubbing)
 
-    def _evaluations(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
+    def _points_to_evaluate(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
         contiguous = np.ascontiguousarray
-        half = self.half_of_each_cylinder(probe, row)
+        half = self.cycle_half_of_each_cylinder(probe, row)
         return Evaluations(contiguous(row), contiguous(probe), contiguous(angle), contiguous(rate), contiguous(half))
 
     def _evaluate(self, curve: ShaftCurve, items: Evaluations, gradients: bool = False) -> CurveArrays:
@@ -188,7 +194,7 @@ class Shaft:
         return out
 
     @cached_property
-    def breaks(self) -> Breaks:
+    def all_breakpoints(self) -> Breaks:
         """All breakpoints of the designs that friction does not lock."""
         parts = [self._breakpoints_of_turn(half) for half in range(len(self._parts))]
         rows = np.flatnonzero(self.unlocked_designs)
@@ -206,7 +212,7 @@ class Shaft:
             touch = self._guide_side_curve(member)
 
             def contact(row: IntArray, probe: Array, angle: Array, touch: ShaftCurve = touch) -> Array:
-                return self._evaluate(touch, self._evaluations(row, probe, angle)).curve[:, :, 0]
+                return self._evaluate(touch, self._points_to_evaluate(row, probe, angle)).curve[:, :, 0]
 
             parts.append(self.sign_change_breakpoints(breaks, contact, CONTACT, int(member)))
         return join_breaks(parts)
@@ -248,7 +254,7 @@ class Shaft:
 
         curve: function of designs (p,), angles in their segments (p,) and angles (p, k), rad, that returns (p, k).
         """
-        segments = segments_of(breaks, self.period)
+        segments = segments_between_breakpoints(breaks, self.period)
         row, probe, low, width, _ = segments.split_into_panels(np.full(len(self.unlocked_designs), _CROSSED))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         value = curve(row, probe, angle)
@@ -269,7 +275,7 @@ class Shaft:
 
         Probe: angles in segments that begin there.
         """
-        breaks = self.breaks
+        breaks = self.all_breakpoints
         code, row = breaks.code[cuts], breaks.row[cuts]
         out = np.zeros((len(cuts), self.numbers))
         local = breaks.angle[cuts] + self._axes.lead[breaks.member[cuts]]
@@ -277,7 +283,7 @@ class Shaft:
             rows = np.flatnonzero((code >= 0) & (breaks.half[cuts] == half))
             member_rates = np.zeros((len(rows), self.numbers))
             chosen = np.ascontiguousarray(cuts[rows])
-            cut_rates(
+            fill_breakpoint_gradients(
                 np.ascontiguousarray(row[rows]),
                 np.ascontiguousarray(local[rows]),
                 np.ascontiguousarray(breaks.code[chosen]),
@@ -289,7 +295,7 @@ class Shaft:
             out[rows] = member_rates
         for member in self.members:
             rows = np.flatnonzero((code == CONTACT) & (breaks.member[cuts] == member))
-            items = self._evaluations(row[rows], probe[rows], breaks.angle[cuts[rows], None])
+            items = self._points_to_evaluate(row[rows], probe[rows], breaks.angle[cuts[rows], None])
             member_rates = self._evaluate(self._guide_side_curve(member), items, gradients=True).curve[:, 0]
             out[rows] = -member_rates[:, 2:] / member_rates[:, 1:2]
         return out

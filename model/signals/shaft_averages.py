@@ -15,7 +15,7 @@ from ..machine.speed_profile import time_per_angle
 from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve_panels
 from .peak_search import Segments, find_maxima
 from .shaft import Shaft
-from .shaft_segments import segments_of
+from .shaft_segments import segments_between_breakpoints
 
 NOTHING = 1e-12
 """If the total is below this fraction of the cylinders' individual magnitudes, it counts as zero: they cancel up to
@@ -28,7 +28,7 @@ def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tupl
     stroke: whether only the outward stroke, or only the inward stroke, counts; None for both. The value is infinite
     where friction locks the design.
     """
-    segments = segments_of(shaft.breaks, shaft.period)
+    segments = segments_between_breakpoints(shaft.all_breakpoints, shaft.period)
     live = None if stroke is None else shaft.moves_outward(segments) == stroke
     maxima = find_maxima(shaft, segments, shaft.panels_per_turn, limit=limit, counted=live)
     nothing = np.isfinite(maxima.values) & (maxima.values <= NOTHING * maxima.size[:, None])
@@ -56,7 +56,7 @@ class Means:
 
 def shaft_means(shaft: Shaft, count: int) -> Means:
     """Return the means of n designs."""
-    segments = segments_of(shaft.breaks, shaft.period)
+    segments = segments_between_breakpoints(shaft.all_breakpoints, shaft.period)
     rows = 2 if shaft.profile is None else 3
     sums, slopes, sizes = np.zeros((rows, count)), np.zeros((rows, count, shaft.numbers)), np.zeros((2, count))
 

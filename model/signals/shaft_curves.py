@@ -101,7 +101,7 @@ class Blocks(NamedTuple):
 
 
 @analytic
-def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
+def components_of_force_signal(kind: Any, f: Any, m: Any, d: Any) -> Any:
     """Return the components of a signal that follows from the joint forces alone, or of a force in `turn_work`."""
     zero = 0.0 * d.r
     if kind in (_PIVOT, WORK + 2):
@@ -118,7 +118,7 @@ def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
 
 
 @analytic
-def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> Any:
+def components_of_motion_signal(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> Any:
     """Return the components of a signal without joint forces. rate: slope of the acceleration over the crank angle."""
     zero = 0.0 * d.r
     if kind == _SPEED:
@@ -135,7 +135,7 @@ def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> An
 
 
 @analytic
-def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
+def _curve_components_of_cylinder(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
     """Return one cylinder's components of a curve.
 
     place: its crank angle, and the segment there. rate: slope of the acceleration over the crank angle, rad/s^2.
@@ -146,12 +146,12 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: An
     if kind == TOUCH:
         return guide_side_function(s, c, m, d, load, sides.turn, sides.swing), zero
     if kind > _LINE and kind < WORK:
-        return vector_of_motion(kind, s, c, m, d, rate)
+        return components_of_motion_signal(kind, s, c, m, d, rate)
     f = joint_forces_with_optional_friction(s, c, m, d, load, sides)
     if kind in (_TORQUE, _POWER):
         torque = torque_without_crank_loads(f.torque, theta, rotation_sense(d), segment)
         return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
-    x, y = vector_of_force(kind, f, m, d)
+    x, y = components_of_force_signal(kind, f, m, d)
     if kind < WORK:
         return x, y
     if kind == WORK:
@@ -256,7 +256,9 @@ def _sum_members(
         s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
         segment = Segment(space.stepped, loads, out.outward[p, i] == 1, space.piece[i], space.shift[i])
         signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
-        x, y = _components(curve.kind, s, c, design_motion(s, c, z), z, signs, (complex(local, step), segment), rate)
+        x, y = _curve_components_of_cylinder(
+            curve.kind, s, c, design_motion(s, c, z), z, signs, (complex(local, step), segment), rate
+        )
         if curve.kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
             x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
         if curve.kind == _ROCKING_COUPLE:
@@ -288,7 +290,7 @@ def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: C
 
 
 @rarely_used_kernel
-def cut_rates(
+def fill_breakpoint_gradients(
     chosen: Integers, angle: Row, code: Integers, number: Row, load: Integers, stepped: ComplexCube, out: Table
 ) -> None:
     """Fill `out` (p, v) with the derivatives of breakpoints, at the cylinders' own angles, by the design."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..machine.cylinder_machines import TURN
+from ..machine.cylinders_as_machines import TURN
 from .peak_search import Segments
 
 FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4
@@ -36,7 +36,7 @@ def join_breaks(parts: list[Breaks]) -> Breaks:
     return Breaks(*(np.concatenate(column) for column in columns))
 
 
-def segments_of(breaks: Breaks, period: float) -> Segments:
+def segments_between_breakpoints(breaks: Breaks, period: float) -> Segments:
     """Return the segments between breakpoints, omitting thin ones."""
     order = np.lexsort((breaks.angle, breaks.row))
     row, low = breaks.row[order], breaks.angle[order]

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..kernel.batches import in_chunks
-from ..machine.cylinder_machines import TURN, cylinder_count, cylinder_machines, single_cylinder
+from ..kernel.batches import run_in_chunks
+from ..machine.cylinders_as_machines import TURN, cylinder_count, machine_of_each_cylinder, single_cylinder_machine
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
-from ..machine.raw_machine_vector import knot_count
+from ..machine.raw_machine_vector import load_knot_count
 from ..machine.work_absorption import may_do_work_over_a_turn
 from .panel_polynomials import resolve_curves
 from .shaft import Shaft
@@ -43,12 +43,14 @@ _STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
 def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     """Return single-crank machines at constant speed that have the same highest peak as the shaft, if there are any."""
     if kind in _GEOMETRY:
-        return (single_cylinder(mechanism),)
-    banked = any(cylinder.bank for cylinder in cylinder_machines(mechanism))
+        return (single_cylinder_machine(mechanism),)
+    banked = any(cylinder.bank for cylinder in machine_of_each_cylinder(mechanism))
     turned = banked and any(path.startswith("gravity.") for item in mechanism.varying for path in item.paths)
     if kind in SUMS or mechanism.speed_profile is not None or turned:
         return ()
-    return tuple({cylinder.mechanism.gravity: cylinder.mechanism for cylinder in cylinder_machines(mechanism)}.values())
+    return tuple(
+        {cylinder.mechanism.gravity: cylinder.mechanism for cylinder in machine_of_each_cylinder(mechanism)}.values()
+    )
 
 
 def shaft_signal_peaks(
@@ -73,17 +75,19 @@ def shaft_signal_peaks(
             peaks = shaft_peaks(shaft, limit=limit, stroke=_STROKES[during])
             values[begin:end, index], angles[begin:end, index] = peaks[:2]
             if len(group) == 1 and cylinders > 1:
-                angles[begin:end, index] = np.mod(peaks[1] + cylinder_machines(mechanism)[index].lead, shaft.period)
+                angles[begin:end, index] = np.mod(
+                    peaks[1] + machine_of_each_cylinder(mechanism)[index].lead, shaft.period
+                )
             if slopes is not None:
                 slopes[begin:end, index] = peaks[2]
 
-    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
-    return highest_peaks(
+    run_in_chunks(len(designs), work, size=_CHUNK, knots=load_knot_count(mechanism))
+    return merge_highest_peaks(
         [(values[:, p], angles[:, p], None if slopes is None else slopes[:, p]) for p in range(len(groups))]
     )
 
 
-def highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
+def merge_highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
     """Return the highest among several lists of peaks (n, k), as many as each has."""
     if len(parts) == 1:
         return parts[0]
@@ -105,7 +109,7 @@ def shaft_signal_averages(
     The mean of a signal judged by its magnitude is NaN, except for the reflected inertia.
     """
     members = tuple(range(cylinder_count(mechanism)))
-    averages, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
+    averages, slopes = _curve_averages(mechanism, [int(kind)], designs, members, gradients)
     values, slopes = averages[:, :, 0], None if slopes is None else slopes[:, :, 0]
     locks = np.isnan(values[1])
     values[1:, locks] = np.inf
@@ -120,7 +124,7 @@ def shaft_signal_averages(
     return values, slopes
 
 
-def _averages(
+def _curve_averages(
     mechanism: Mechanism, kinds: Sequence[int], designs: Array, members: tuple[int, ...], gradients: bool
 ) -> tuple[Array, Array | None]:
     """Return `Averages` (3, n, c) of curves and their derivatives (3, n, c, 3 + k).
@@ -144,7 +148,7 @@ def _averages(
                 half = 0.5 / np.where(is_positive, roots[:, :, None], 1.0)
                 slopes[1:, begin:end, index] = np.where(is_positive, half * means.gradients[SQUARE:], 0.0)
 
-    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
+    run_in_chunks(len(designs), work, size=_CHUNK, knots=load_knot_count(mechanism))
     return values, slopes
 
 
@@ -153,7 +157,9 @@ def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) ->
     mean = np.zeros((len(designs), CURVES))
     slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
     for member in range(cylinder_count(mechanism)):
-        member_mean, member_slopes = _averages(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
+        member_mean, member_slopes = _curve_averages(
+            mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients
+        )
         mean += member_mean[0]
         if slopes is not None and member_slopes is not None:
             slopes += member_slopes[0]

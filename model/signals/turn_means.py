@@ -4,9 +4,9 @@ Smooth curves are integrated with the trapezoidal rule in the crowded angle, whi
 analytic functions. Piecewise curves are integrated on Gauss-Legendre panels between breakpoints. The closer a linkage
 is to locking, the closer are the curves' singularities, at the distance atanh(kappa) in the crowded angle
 (`segments.crowding_parameter`). The number of nodes therefore grows with 1 / kappa. The rod's direction would lose
-digits in the same way; `_squared_rod_along_line` keeps them. Loads that jump at a dead centre do so while the slider
-stands still. Without friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump
-times its own motion to the derivatives.
+digits in the same way; `_squared_rod_component_along_line` keeps them. Loads that jump at a dead centre do so while the
+slider stands still. Without friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds
+the jump times its own motion to the derivatives.
 
 Magnitudes of joint forces, such as |A|, have sharp bends where a force is close to zero. Friction transfers these bends
 to the torque. There, panels are halved until the last Legendre coefficients of curve and derivatives have died out, or
@@ -42,7 +42,7 @@ from ..dynamics.torque_with_friction import (
     torque_without_crank_loads,
 )
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
 from ..kinematics.position import motion_from_rod_vector
 from ..machine.derived_designs import derived_blocks
@@ -133,7 +133,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _squared_rod_along_line(theta: Any, d: Any, gap: Any) -> Any:
+def _squared_rod_component_along_line(theta: Any, d: Any, gap: Any) -> Any:
     """Return l^2 cos^2(phi), m^2, exact to rounding however close to locking; gap: l - r - |e|, m, equally exact.
 
     l^2 - across^2 = (l - |across|) (l + |across|) loses digits where the rod is nearly normal to the slider line. With
@@ -182,7 +182,7 @@ def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspac
         c, y = math.cos(tau), math.sin(tau)
         share = 1.0 / points if is_even else workspace.weights[i]
         workspace.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
-        square = _squared_rod_along_line(theta, curve.d, curve.gap)
+        square = _squared_rod_component_along_line(theta, curve.d, curve.gap)
         _fill_signal_or_work(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
         for k in range(workspace.rates.shape[0]):
             workspace.rates[k, 0, i] = workspace.real[k]
@@ -279,7 +279,7 @@ def _add_moving_segment_ends(
     own = curve.segment
     for end in range(2):
         i, theta = (s + 1) % count if end else s, cuts.angle[s + 1] if end else cuts.angle[s]
-        square = _squared_rod_along_line(theta, curve.d, curve.gap)
+        square = _squared_rod_component_along_line(theta, curve.d, curve.gap)
         _fill_signal_or_work(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
         sign = (1.0 if end else -1.0) / (STEP * _TURN)
         for v in range(curve.stepped.shape[0]):
@@ -365,13 +365,13 @@ def turn_means(
         part = CurveMeans(*(column[begin:end] if len(column) else column for column in means))
         fill_means(task, blocks, steps, gaps[begin:end], _RULE, part)
 
-    in_chunks(count, work, knots=len(task.loads.knots))
+    run_in_chunks(count, work, knots=len(task.loads.knots))
     if gradients:
         return CurveMeans(
             means.mean,
             means.square,
-            numbers.chain_to_designs(means.mean_slope),
-            numbers.chain_to_designs(means.square_slope),
+            numbers.gradients_by_design_numbers(means.mean_slope),
+            numbers.gradients_by_design_numbers(means.square_slope),
         )
     return means
 

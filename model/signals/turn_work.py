@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..dynamics.segments import CycleWindow
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
+from ..machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from .shaft_statistics import shaft_turn_work
@@ -49,7 +49,7 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
     For a two-turn cycle they cover both turns; for several cylinders they are sums.
     """
     designs = require_full_rotation(designs)
-    if is_treated_as_shaft(mechanism):
+    if has_cylinders_or_speed_profile(mechanism):
         return TurnWork(*shaft_turn_work(mechanism, designs, gradients=gradients))
     if cycle_turns(mechanism) > 1:
         first, second = (turn_work(half, designs, gradients=gradients) for half in machines_of_turns(mechanism))

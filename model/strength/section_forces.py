@@ -44,7 +44,7 @@ class Stress(NamedTuple):
 
 
 @analytic
-def stress_along(
+def stress_coefficients_of_link(
     part: Any, sine: Any, cosine: Any, m: Motion, d: Design, f: Forces, turn: Any, bar: tuple[Any, Any, Any]
 ) -> Stress:
     """Return the `Stress` in the rod (`ROD`) or the crank under joint forces.

@@ -28,8 +28,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..kernel.batches import in_chunks, require_full_rotation
-from ..machine.cylinder_machines import machines_of_turns
+from ..kernel.batches import require_full_rotation, run_in_chunks
+from ..machine.cylinders_as_machines import machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..signals.two_turn_peaks import angles_within_both_turns
@@ -43,7 +43,7 @@ from .stress_search import (
     SampledStress,
     choose_highest_candidates,
     climb_to_maxima,
-    first_candidates,
+    first_rows_of_candidates,
     list_maximum_candidates,
     uninitialised_candidates,
 )
@@ -114,7 +114,7 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
     candidates = uninitialised_candidates(candidate_count)
     samples = SampledStress(theta, first, stress, sides)
     count = list_maximum_candidates(start, samples, criteria, margin, *space, best, candidates)
-    candidates = first_candidates(candidates, count)
+    candidates = first_rows_of_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
     climb_to_maxima(samples, criteria, candidates, values, angles)
     turns = bars.turns_of_segments(segment[candidates.samples])
@@ -279,7 +279,7 @@ def stress_peaks(
         if slopes is not None and peaks.gradients is not None:
             slopes[:, begin:end] = peaks.gradients.reshape(location_count, end - begin, limit, -1)
 
-    in_chunks(n, work)
+    run_in_chunks(n, work)
     return [
         StressPeaks(values[p], labels[p], peak_places[p], None if slopes is None else slopes[p])
         for p in range(location_count)

@@ -38,7 +38,7 @@ from ..machine.raw_machine_vector import Loads, Raw
 from ..machine.raw_numbers_of_designs import RawNumbers, raw_machine_numbers
 from ..signals.signal_inputs import cycle_window, signal_inputs
 from ..signals.signals import Signal, design_motion
-from .section_forces import stress_along
+from .section_forces import stress_coefficients_of_link
 
 ANGLES = 128
 """Samples per turn, at least three per segment."""
@@ -138,7 +138,7 @@ def _fill_stress(
                 zw = complex(w, STEP * bars.rates[v, 3 * part])
                 zt = complex(t, STEP * bars.rates[v, 3 * part + 1])
                 z_rho = complex(rho, STEP * bars.rates[v, 3 * part + 2])
-            c = stress_along(part, zs, zc, m, z, f, sides.turn, (zw, zt, z_rho))
+            c = stress_coefficients_of_link(part, zs, zc, m, z, f, sides.turn, (zw, zt, z_rho))
             k = 2 * 7 * part
             for i in range(7):
                 out[p, k + i], out[p, k + 7 + i] = c[i].real, c[i].imag / STEP

@@ -43,7 +43,7 @@ def uninitialised_candidates(count: int) -> Candidates:
     return Candidates(columns[0], columns[1], columns[2], np.empty((count, 2), np.int64), np.empty(count))
 
 
-def first_candidates(candidates: Candidates, count: int) -> Candidates:
+def first_rows_of_candidates(candidates: Candidates, count: int) -> Candidates:
     """Return the first candidates."""
     return Candidates(
         candidates.bar[:count],
@@ -55,7 +55,7 @@ def first_candidates(candidates: Candidates, count: int) -> Candidates:
 
 
 @analytic
-def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
+def _stress_of_sample(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
     """Stress of a sample at a location; with base + 7, its slope over the crank angle."""
     axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
     bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
@@ -63,8 +63,8 @@ def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
 
 
 @analytic
-def _slope_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
-    """Slope of `_stress_at_share` over the location."""
+def _stress_slope_of_sample(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
+    """Slope of `_stress_of_sample` over the location."""
     axial = row[k, base + 1] + 2.0 * xi * row[k, base + 2]
     return axial + side * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
 
@@ -110,7 +110,7 @@ def _fill_greatest_combinations(samples: SampledStress, begin: int, count: int, 
             xi = j / (STATIONS - 1.0)
             top, bottom = -math.inf, math.inf
             for k in range(count):
-                value = _stress_at_share(samples.stress, begin + k, 0, samples.sides[f], xi)
+                value = _stress_of_sample(samples.stress, begin + k, 0, samples.sides[f], xi)
                 top, bottom = max(top, value), min(bottom, value)
             for g in range(criteria.shape[0]):
                 best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
@@ -154,7 +154,7 @@ def list_maximum_candidates(
                         continue
                     row, xi = space[j], j / (STATIONS - 1.0)
                     for k in range(count):
-                        row[k] = _stress_at_share(stress, begin + k, 0, sides[f], xi)
+                        row[k] = _stress_of_sample(stress, begin + k, 0, sides[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
                     for end in range(2):  # a single call, as the compiler inlines each call separately
@@ -184,34 +184,34 @@ def _angle_of_nearby_maximum(samples: SampledStress, side: Any, sign: Any, xi: A
     stress, first, last = samples.stress, samples.begins, samples.theta.shape[0] - 1
     t = 0.0
     for _ in range(_ITERATIONS):
-        rate = sign * _stress_at_share(stress, k, _SLOPE, side, xi)
+        rate = sign * _stress_of_sample(stress, k, _SLOPE, side, xi)
         if rate > 0.0 and k < last and not first[k + 1]:
-            if sign * _stress_at_share(stress, k + 1, _SLOPE, side, xi) < 0.0:
+            if sign * _stress_of_sample(stress, k + 1, _SLOPE, side, xi) < 0.0:
                 t = 1.0
                 break
             k += 1
         elif rate < 0.0 and not first[k]:
             k -= 1
-            if sign * _stress_at_share(stress, k, _SLOPE, side, xi) > 0.0:
+            if sign * _stress_of_sample(stress, k, _SLOPE, side, xi) > 0.0:
                 t = 1.0
                 break
         else:
             break
-    f0, g0 = _stress_at_share(stress, k, 0, side, xi), _slope_at_share(stress, k, 0, side, xi)
+    f0, g0 = _stress_of_sample(stress, k, 0, side, xi), _stress_slope_of_sample(stress, k, 0, side, xi)
     if t == 0.0:
         return k, samples.theta[k], f0, g0
     h = samples.theta[k + 1] - samples.theta[k]
-    f1, g1 = _stress_at_share(stress, k + 1, 0, side, xi), _slope_at_share(stress, k + 1, 0, side, xi)
-    s0 = h * _stress_at_share(stress, k, _SLOPE, side, xi)
-    s1 = h * _stress_at_share(stress, k + 1, _SLOPE, side, xi)
+    f1, g1 = _stress_of_sample(stress, k + 1, 0, side, xi), _stress_slope_of_sample(stress, k + 1, 0, side, xi)
+    s0 = h * _stress_of_sample(stress, k, _SLOPE, side, xi)
+    s1 = h * _stress_of_sample(stress, k + 1, _SLOPE, side, xi)
     # The slope of the cubic is s0 + b t + a t^2; s0 and s1 = s0 + b + a have opposite signs.
     a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
     width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
     t = min(1.0, max(0.0, 2.0 * s0 / (width - b)))
     u = 1.0 - t
     h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
-    r0 = h * _slope_at_share(stress, k, _SLOPE, side, xi)
-    r1 = h * _slope_at_share(stress, k + 1, _SLOPE, side, xi)
+    r0 = h * _stress_slope_of_sample(stress, k, _SLOPE, side, xi)
+    r1 = h * _stress_slope_of_sample(stress, k + 1, _SLOPE, side, xi)
     value, slope = h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1, h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1
     return k, samples.theta[k] + h * t, value, slope
 

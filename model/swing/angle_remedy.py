@@ -5,7 +5,7 @@ import math
 _TURN = 2.0 * math.pi
 
 
-def smaller_swing(start: float, end: float) -> str:
+def remedy_with_nearer_angles(start: float, end: float) -> str:
     """Return the remedy for a swing of half a turn or more, rad: nearer angles of the same ends."""
     near = [math.remainder(angle, _TURN) for angle in (start, end)]
     pairs = zip((start, end), near, strict=True)

@@ -38,13 +38,13 @@ class DrivenAngles:
 
 def closes_over_swing(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close over the whole swing."""
-    return _closing_designs(designs, swing_ends(mechanism, swing, designs))
+    return _closes_over_ends(designs, swing_ends(mechanism, swing, designs))
 
 
 def swings_without_dead_point(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close and, if the slider drives, pass no dead point."""
     ends = swing_ends(mechanism, swing, designs)
-    passing = _closing_designs(designs, ends)
+    passing = _closes_over_ends(designs, ends)
     if swing.driver == "slider" and passing.any():
         sign = _branch_sign(mechanism)
         passing &= ~_has_dead_point(ends, sign, designs)
@@ -70,12 +70,12 @@ def slider_travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[
     def signed_travel(sizes: Any, first: Any, last: Any) -> Any:
         return _slider_position(last, sign, sizes) - _slider_position(first, sign, sizes)
 
-    values, slopes = _with_slopes(signed_travel, designs, ends, (ends.start, 0), (ends.end, 1))
+    values, slopes = _value_and_slopes_by_complex_step(signed_travel, designs, ends, (ends.start, 0), (ends.end, 1))
     side = np.where(values < 0.0, -1.0, 1.0)
     return side * values, side[:, None] * slopes
 
 
-def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
+def swept_crank_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
     """Return the crank angle (n,) between the ends, rad, and its slopes (n, 3 + k)."""
     ends = swing_ends(mechanism, swing, designs, slopes=True)
     assert ends.slopes is not None
@@ -89,7 +89,7 @@ def _branch_sign(mechanism: Mechanism) -> float:
     return mechanism.sign
 
 
-def _closing_designs(designs: Array, ends: Ends) -> Mask:
+def _closes_over_ends(designs: Array, ends: Ends) -> Mask:
     r, l = designs[:, 0], designs[:, 1]
     with np.errstate(invalid="ignore"):
         pin_distance, angle = ends.largest_pin_distance_from_line(designs), ends.high - ends.low
@@ -113,7 +113,9 @@ def _transmission_angle_candidates(
 ) -> DrivenAngles:
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
-        normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.angles_within(angle)]
+        normal_angles = [
+            angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.equal_angles_within_swing(angle)
+        ]
         places += [(ends.wrap_into_swing(angle), None) for angle in normal_angles]
         side = None
     else:
@@ -133,7 +135,7 @@ def _transmission_angle_candidates(
     measured: list[tuple[Array, Array]] = []
     for theta, end in places:
         is_present = np.isfinite(theta)
-        size, slope = _with_slopes(
+        size, slope = _value_and_slopes_by_complex_step(
             measure, designs, ends, (np.where(is_present, theta, ends.start), end), slopes=slopes
         )
         steep = np.sqrt(np.maximum(1.0 - size * size, _FLAT))[:, None]
@@ -145,7 +147,7 @@ def _transmission_angle_candidates(
     return DrivenAngles(*(np.stack(parts, axis=1) for parts in zip(*measured, strict=True)))
 
 
-def _with_slopes(
+def _value_and_slopes_by_complex_step(
     function: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None], slopes: bool = True
 ) -> tuple[Array, Array]:
     """Return a function (n,) of dimensions and crank angles, and its derivatives (n, 3 + k) by complex steps.

@@ -86,7 +86,7 @@ class Ends:
         return moved.reshape(-1, 2)
 
 
-def append_start_number(
+def append_swing_start(
     numbers: RawNumbers, plain: Complexes, steps: Complexes, designs: Array, column: int
 ) -> tuple[RawNumbers, Complexes]:
     """Return numbers and stepped blocks followed by the start of the swing, a number that no kernel uses.

@@ -185,7 +185,7 @@ def swing_curves(
         )
         joints = {name: getattr(cycle_curves, name) for name in JOINTS}
     else:
-        drive, joints = _free_crank_forces(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
+        drive, joints = _forces_with_undriven_crank(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
         angle = np.arcsin(
             np.clip(np.abs(pin_distance_from_crank_line(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0)
@@ -249,7 +249,7 @@ def crank_angles_at_slider(linkage: Linkage, swing: Swing, x: Array) -> Array:
     return np.asarray(theta)
 
 
-def _free_crank_forces(
+def _forces_with_undriven_crank(
     theta: Array, m: Motion, d: Design, load: Array, on_crank: Array
 ) -> tuple[Array, dict[str, Array]]:
     """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
@@ -266,7 +266,9 @@ def _free_crank_forces(
             bx, by = _pin_force_with_friction(
                 bx, by, partial(rod_and_crank_residuals, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides)
             )
-            sure = np.abs(pin_distance_from_crank_line(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
+            sure = np.abs(pin_distance_from_crank_line(sine, cosine, m)) > d.l * np.sin(
+                angle_above_which_pins_cannot_lock(d)
+            )
             bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
     slide = np.sign(m.x_1 * d.speed)
@@ -288,7 +290,7 @@ def _pin_force_with_friction(bx: Array, by: Array, rows: Callable[[Array, Array]
     return np.where(near, bx, np.nan), np.where(near, by, np.nan)
 
 
-def locking_angle(d: Design) -> Any:
+def angle_above_which_pins_cannot_lock(d: Design) -> Any:
     """Return the angle between rod and crank, rad, above which friction in the pins cannot lock; at most 90 deg.
 
     The pins in a row rotate it by no more than the sum of their friction circles divided by its length.

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..machine.mechanism import Mechanism
 from ..signals.peak_search import Maxima, Segments, find_maxima
 from .closure import swings_without_dead_point
@@ -57,7 +57,7 @@ class _Curve:
         """Return the pieces of the strokes, each return stroke after its forward stroke."""
         parts = []
         for way, pieces in enumerate(self.ways):
-            design, piece = np.nonzero(pieces.has_length)
+            design, piece = np.nonzero(pieces.have_length)
             low, high = pieces.cuts[design, piece], pieces.cuts[design, piece + 1]
             number = (design * pieces.cuts.shape[1] + piece) * len(self.ways) + way
             parts.append((design, low + pieces.back, high + pieces.back, number))
@@ -113,7 +113,7 @@ def swing_peaks(
     return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
-def negated_least_drive_peaks(
+def peaks_of_negated_least_drive(
     mechanism: Mechanism,
     swing: Swing,
     designs: Array,
@@ -132,7 +132,7 @@ def negated_least_drive_peaks(
     def find(many: SwingBatch) -> Maxima:
         first, last = (many.driver_position_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
-        return _maxima_of_state(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
+        return _maxima_of_state(many, (many.pieces_of_stroke(back=back),), DRIVE, limit, gradients, toward)
 
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True)
     return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
@@ -147,7 +147,7 @@ def holding_drive_peaks(
     """
     unit_design = np.ones((1, 3 + len(mechanism.varying)))
     ways = 2 if SwingBatch(mechanism, swing, unit_design, slopes=False, slow=True, free=free).ways_differ else 1
-    find = partial(_drive_at_ends, gradients=gradients)
+    find = partial(_holding_drive_at_ends, gradients=gradients)
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True, free=free)
     return _peaks_of_swinging_designs(mechanism, swing, designs, 2 * ways, gradients, find, batch_of)
 
@@ -181,9 +181,9 @@ def _peaks_of_swinging_designs(
             maxima = find(batch)
             values[designs_here], places[designs_here] = maxima.values, maxima.places
             if gradients:
-                slopes[designs_here] = batch.numbers.chain_to_designs(maxima.slopes)
+                slopes[designs_here] = batch.numbers.gradients_by_design_numbers(maxima.slopes)
 
-    in_chunks(len(rows), work, size=_CHUNK)
+    run_in_chunks(len(rows), work, size=_CHUNK)
     return SwingPeaks(values, places, slopes if gradients else None)
 
 
@@ -191,8 +191,8 @@ def _peaks_of_state(batch: SwingBatch, state: int, limit: int, gradients: bool) 
     # The magnitude of the guide's friction contributes to a force on the slider: without slopes, its kink needs no cut.
     contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
-    ways = batch.strokes_that_differ() if forces else (False,)
-    cut = tuple(batch.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
+    ways = batch.distinct_strokes() if forces else (False,)
+    cut = tuple(batch.pieces_of_stroke(back=back, forces=forces, contacts=contacts) for back in ways)
     return _maxima_of_state(batch, cut, state, limit, gradients)
 
 
@@ -203,9 +203,9 @@ def _maxima_of_state(
     return find_maxima(curve, curve.segments(), np.full(batch.count, _PANELS), limit=limit, signed=toward is not None)
 
 
-def _drive_at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
+def _holding_drive_at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
-    for back in batch.strokes_that_differ():
+    for back in batch.distinct_strokes():
         for share in (0.0, 1.0):
             rows = np.arange(batch.count)
             near = np.full(batch.count, 1e-9 if share == 0.0 else 1.0 - 1e-9)

@@ -17,7 +17,7 @@ from ..linkage.require_single_linkage import require_single_linkage, require_sli
 from ..machine.clearance import Friction
 from ..machine.mechanism import Mechanism, Start
 from ..tolerance.error_distributions import SOURCES, limits_of_sources
-from .swing import Swing, require_swing, swing_between_crank_angles, with_start_of_machine, without_inertia
+from .swing import Swing, require_swing, slow_swing, swing_between_crank_angles, with_start_set_by_machine
 from .swing_cycle import SwingCycle, SwingPoint
 from .swing_types import Driver, Law, Side
 
@@ -56,7 +56,7 @@ def resolve_swing(
     Raises `InputError` for ends of two kinds, missing ends, and a tabulated motion if the job has no table.
     """
     names = {name: (field_names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
-    motion = None if motion is None else with_start_of_machine(mechanism, motion)
+    motion = None if motion is None else with_start_set_by_machine(mechanism, motion)
     fields: dict[str, Any] = {
         **_requested_ends(request, motion, names),
         **{
@@ -80,7 +80,7 @@ def resolve_swing(
         swing = replace(motion, **fields)
     else:
         motion_fields = ("driver", "law", "duration", "points", "actuator_tolerance")
-        swing = _new_swing(
+        swing = _swing_from_request_alone(
             ({} if motion is None else {name: getattr(motion, name) for name in motion_fields}) | fields, names
         )
     return replace(mechanism, start=Start()), replace(swing, follows=False)
@@ -104,7 +104,7 @@ def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[
     return ends | {"stated_for": stated_for}
 
 
-def _new_swing(fields: dict[str, Any], names: Mapping[str, str]) -> Swing:
+def _swing_from_request_alone(fields: dict[str, Any], names: Mapping[str, str]) -> Swing:
     slider = fields.get("stated_for") == "slider"
     for name, key in zip(_ANGLES, _POSITIONS if slider else _ANGLES, strict=True):
         if name not in fields:
@@ -190,7 +190,7 @@ class SwingSummary:
         return abs(self.slider_positions[1] - self.slider_positions[0])
 
 
-def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSummary:
+def summarise_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSummary:
     """Return the numbers for a swing. Peaks are over the continuous crank angle; energies are integrals between kinks.
 
     Raises the errors of `require_swing`.
@@ -199,12 +199,12 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     swing = swing_between_crank_angles(mechanism, checked, swing)
     cycle = SwingCycle(mechanism, checked, swing)
     ends = np.array([0.0, 1.0])
-    slow = SwingCycle(mechanism, checked, without_inertia(swing))
+    slow = SwingCycle(mechanism, checked, slow_swing(swing))
     still = slow.curves(ends), slow.curves(ends, back=True)
     free = SwingCycle(replace(mechanism, friction=Friction()), checked, slow.swing)
-    locked = cycle.first_locked()
-    peak = cycle.greatest("drive")
-    power = None if swing.duration is None else cycle.greatest("power")
+    locked = cycle.first_lockable_point()
+    peak = cycle.greatest_magnitude("drive")
+    power = None if swing.duration is None else cycle.greatest_magnitude("power")
     if locked is not None:  # near that place the drive grows without bound
         peak, power = locked, None if power is None else locked
     tolerances = mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
@@ -216,14 +216,14 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
         peak_drive=peak,
         drive_start=(float(still[0].drive[0]), float(still[1].drive[1])),
         drive_end=(float(still[0].drive[1]), float(still[1].drive[0])),
-        holds=slow.friction_holds(),
+        holds=slow.is_held_by_friction(),
         energy_forward=cycle.driver_work(back=False),
         energy_back=cycle.driver_work(back=True),
         stored=free.driver_work(back=False),
         efficiency=None if locked else _drive_efficiency(slow, free),
         peak_power=power,
-        least_transmission=cycle.least("driven_angle"),
-        position_error=cycle.greatest("driven_error") if tolerances else None,
+        least_transmission=cycle.minimum_of_curve("driven_angle"),
+        position_error=cycle.greatest_magnitude("driven_error") if tolerances else None,
         locked=locked,
     )
 

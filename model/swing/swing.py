@@ -17,7 +17,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_linkage, require_slider
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .angle_remedy import smaller_swing
+from .angle_remedy import remedy_with_nearer_angles
 from .angles_from_position import crank_angles_at
 from .law import NO_TABLE, law_spline_pieces, travel_speed_acceleration
 from .swing_types import Law, Side, Stated, SwingDriver
@@ -120,7 +120,7 @@ class Swing:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
                 f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; "
-                f"{smaller_swing(self.start, self.end)}"
+                f"{remedy_with_nearer_angles(self.start, self.end)}"
             )
 
     @property
@@ -148,7 +148,7 @@ class Swing:
         """+1 if the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return math.copysign(1.0, self.end - self.start)
 
-    def angles_within(self, angle: float) -> list[float]:
+    def equal_angles_within_swing(self, angle: float) -> list[float]:
         """Return the crank angles within the swing that equal an angle up to whole turns."""
         low, high = sorted((self.start, self.end))
         occurrence = angle + _TURN * math.ceil((low - angle) / _TURN)
@@ -159,7 +159,7 @@ CRANK_TURN = Swing(start=0.0, end=_TURN, driver="turning crank")
 """The motion of a machine with `lever` whose crank rotates fully, at the speed of the machine."""
 
 
-def without_inertia(swing: Swing) -> Swing:
+def slow_swing(swing: Swing) -> Swing:
     """Return a swing without inertia."""
     return replace(swing, law="slow", duration=None, points=())
 
@@ -178,7 +178,7 @@ def dead_point_angles(linkage: Linkage) -> tuple[float, ...]:
     return tuple(angles)
 
 
-def with_start_of_machine(mechanism: Mechanism, swing: Swing) -> Swing:
+def with_start_set_by_machine(mechanism: Mechanism, swing: Swing) -> Swing:
     """Return the swing from the start that a machine for one design sets, if any."""
     start = getattr(mechanism.start, "angle" if swing.stated_for == "crank" else "place")
     if start is None:
@@ -188,7 +188,7 @@ def with_start_of_machine(mechanism: Mechanism, swing: Swing) -> Swing:
 
 def swing_between_crank_angles(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     """Return the swing of one linkage between two crank angles. Raises `AssemblyError` if it cannot reach an end."""
-    swing = with_start_of_machine(mechanism, swing)
+    swing = with_start_set_by_machine(mechanism, swing)
     if swing.stated_for == "crank":
         return swing
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
@@ -236,17 +236,19 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
 
 def _require_swing_without_dead_point(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> None:
     _require_closing(linkage, swing)
-    passed = sorted(angle for dead in dead_point_angles(linkage) for angle in swing.angles_within(dead))
+    passed = sorted(angle for dead in dead_point_angles(linkage) for angle in swing.equal_angles_within_swing(dead))
     if swing.driver == "slider" and passed:
         raise InputError(
             "a slider drives the crank only between dead points, where crank and rod are in line; "
-            f"the swing from {_degrees(swing.start)} to {_degrees(swing.end)} has one at {_degrees(passed[0])}; "
+            f"the swing from {_degrees_text(swing.start)} to {_degrees_text(swing.end)} has one at "
+            f"{_degrees_text(passed[0])}; "
             "stay on one side of it, change the dimensions, or drive the crank"
         )
     if swing.driver == "slider" and _has_overlapping_links(linkage, swing):
         raise InputError(
             "a slider drives the crank only where crank and rod are not in line; got a rod as long as the crank, no "
-            f"offset, and both folded at {_degrees(0.5 * (swing.start + swing.end))}, the slider on the crank pivot; "
+            f"offset, and both folded at {_degrees_text(0.5 * (swing.start + swing.end))}, the slider on the crank "
+            "pivot; "
             "swing on the other side, or change a length"
         )
     for load in mechanism.loads:
@@ -266,7 +268,12 @@ def _has_overlapping_links(linkage: Linkage, swing: Swing) -> bool:
 
 def extreme_angles(swing: Swing) -> list[float]:
     """Return the ends of a swing, and its crank angles normal to the slider line."""
-    return [swing.start, swing.end, *swing.angles_within(0.5 * math.pi), *swing.angles_within(1.5 * math.pi)]
+    return [
+        swing.start,
+        swing.end,
+        *swing.equal_angles_within_swing(0.5 * math.pi),
+        *swing.equal_angles_within_swing(1.5 * math.pi),
+    ]
 
 
 def _require_closing(linkage: Linkage, swing: Swing) -> None:
@@ -276,10 +283,10 @@ def _require_closing(linkage: Linkage, swing: Swing) -> None:
     if pin_distance >= l:
         raise AssemblyError(
             "the linkage must close over the whole swing: rod > |offset - crank sin(crank angle)|; "
-            f"got a rod of {1e3 * l:.6g} mm and {1e3 * pin_distance:.6g} mm at {_degrees(worst)}; "
+            f"got a rod of {1e3 * l:.6g} mm and {1e3 * pin_distance:.6g} mm at {_degrees_text(worst)}; "
             "lengthen the rod, change the offset, or reduce the swing"
         )
 
 
-def _degrees(angle: float) -> str:
+def _degrees_text(angle: float) -> str:
     return f"{math.degrees(angle):.6g} deg"

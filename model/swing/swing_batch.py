@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.torque_with_friction import determinacy_margin
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..kinematics.position import motion
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
@@ -22,10 +22,10 @@ from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from .closure import swings_without_dead_point, transmission_angle_candidates
-from .end_angles import Ends, append_start_number, greatest_pin_distance, swing_ends, swing_start_column
-from .forces import locking_angle
+from .end_angles import Ends, append_swing_start, greatest_pin_distance, swing_ends, swing_start_column
+from .forces import angle_above_which_pins_cannot_lock
 from .law import corner_times, reversed_law_pieces, time_fractions_at_travel
-from .swing import Swing, without_inertia
+from .swing import Swing, slow_swing
 from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, KernelSwing, Points, kernel_swing, swing_states
 
 _SHORTEST = 1e-12
@@ -47,7 +47,7 @@ class Pieces:
     state: IntArray
 
     @property
-    def has_length(self) -> Mask:
+    def have_length(self) -> Mask:
         """Pieces (n, c - 1) of nonzero length."""
         return np.asarray(np.diff(self.cuts, axis=1) > _SHORTEST)
 
@@ -73,7 +73,7 @@ class SwingBatch:
     ) -> None:
         """Take designs (n, 3 + k). slow: without inertia. free: without friction. forces: whether states need them."""
         raw, self.loads = raw_inputs_with_all_features(mechanism)
-        self.mechanism, self.swing = mechanism, without_inertia(swing) if slow else swing
+        self.mechanism, self.swing = mechanism, slow_swing(swing) if slow else swing
         self.rubs = mechanism.with_largest_variables.friction.acts and not free
         self.path: KernelSwing = kernel_swing(self.swing, rubbing=self.rubs, forces=forces)
         self.designs, self.count = designs, len(designs)
@@ -84,7 +84,7 @@ class SwingBatch:
         self.complex_blocks: Complexes = self.blocks.astype(np.complex128)
         column = swing_start_column(mechanism)
         if column is not None:
-            numbers, self.steps = append_start_number(numbers, self.complex_blocks, self.steps, designs, column)
+            numbers, self.steps = append_swing_start(numbers, self.complex_blocks, self.steps, designs, column)
         self.numbers, self.columns = numbers, len(numbers.columns)
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
         self.stepped_ends = self.ends.with_imaginary_steps(self.columns, column) if slopes else self.plain_ends
@@ -117,22 +117,22 @@ class SwingBatch:
         if self.swing.driver == "slider":
             least = transmission_angle_candidates(self.mechanism, self.swing, self.designs).values.min(axis=1)
             pins = d.crank_pin_circle + d.slider_pin_circle + d.crank_pivot_circle > 0.0
-            return np.asarray(pins & (least <= locking_angle(d)))
+            return np.asarray(pins & (least <= angle_above_which_pins_cannot_lock(d)))
         pin_distance = greatest_pin_distance(self.designs, self.ends.extreme_angles())
         return np.asarray(determinacy_margin(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
 
-    def strokes_that_differ(self) -> tuple[bool, ...]:
+    def distinct_strokes(self) -> tuple[bool, ...]:
         """Return the strokes that differ: the forward stroke, and the return stroke unless it is alike."""
         return (False, True) if self.ways_differ else (False,)
 
-    def pieces(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
+    def pieces_of_stroke(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
         """Return the pieces of one stroke.
 
         forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the guide
         force.
         """
         self.table = reversed_law_pieces(self.swing.points) if back else self.swing.law_pieces
-        kinks = list(self._cuts_in_forces()) if forces else []
+        kinks = list(self._cuts_where_forces_change()) if forces else []
         kink_shares, codes = self._time_fractions_at_travel([way for way, _ in kinks]), [code for _, code in kinks]
         inner_cuts = [*self._cuts_at_law_corners(), *zip(kink_shares, codes, strict=True)]
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in inner_cuts)]
@@ -140,15 +140,15 @@ class SwingBatch:
         cuts = np.stack(shares, axis=1)
         cuts = np.where((cuts > _SHORTEST) & (cuts < 1.0 - _SHORTEST), cuts, np.where(cuts < 0.5, 0.0, 1.0))
         cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
-        uncut = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
+        uncut = _sort_cuts(Pieces(back, 1.0 - cuts if back else cuts, state))
         touching = forces and contacts and self.rubs and self.mechanism.with_largest_variables.friction.guide > 0.0
-        return self._with_contacts(uncut) if touching else uncut
+        return self._cut_at_guide_side_changes(uncut) if touching else uncut
 
     def _cuts_at_law_corners(self) -> Any:
         for share in corner_times(self.swing.law, self.table):
             yield np.full(self.count, share), -1
 
-    def _cuts_in_forces(self) -> Any:
+    def _cuts_where_forces_change(self) -> Any:
         """Yield every cut in the forces: fraction (n,) of the forward stroke, and the state with a fixed value."""
         friction, slider = self.mechanism.with_largest_variables.friction, self.swing.driver == "slider"
         if self.rubs:
@@ -174,7 +174,7 @@ class SwingBatch:
     def _cuts_at_position(self, x: float) -> Any:
         """Yield the cuts at which the slider passes a position."""
         if self.swing.driver == "slider":
-            yield self._share_at_position(np.full(self.count, x)), PLACE
+            yield self._travel_time_fraction_at_position(np.full(self.count, x)), PLACE
             return
         r, l, e = self.designs[:, :3].T
         size = np.hypot(x, e)
@@ -191,7 +191,7 @@ class SwingBatch:
         if self.swing.driver == "crank":
             yield np.clip((theta - first) / (last - first), 0.0, 1.0), state
         else:
-            yield self._share_at_position(self._slider_position(theta)), state
+            yield self._travel_time_fraction_at_position(self._slider_position(theta)), state
 
     def _slider_position(self, theta: Any) -> Array:
         r, l, e = self.designs[:, :3].T
@@ -202,7 +202,7 @@ class SwingBatch:
         """Return the driver position at crank angles (n,): these angles, or slider positions, m."""
         return theta if self.swing.driver == "crank" else self._slider_position(theta)
 
-    def _share_at_position(self, x: Array) -> Array:
+    def _travel_time_fraction_at_position(self, x: Array) -> Array:
         first, last = self._slider_position(self.ends.start), self._slider_position(self.ends.end)
         with np.errstate(divide="ignore", invalid="ignore"):
             s = (x - first) / (last - first)
@@ -216,7 +216,7 @@ class SwingBatch:
         off = np.isnan(s)
         return list(np.where(off, np.nan, time_fractions_at_travel(self.swing.law, np.where(off, 0.0, s), self.table)))
 
-    def _with_contacts(self, pieces: Pieces) -> Pieces:
+    def _cut_at_guide_side_changes(self, pieces: Pieces) -> Pieces:
         """Return pieces with further cuts where the guide force changes sides between neighbouring samples."""
         u = np.linspace(0.0, 1.0, _SCAN)
         a, span = pieces.cuts[:, :-1, None], np.diff(pieces.cuts, axis=1)[:, :, None]
@@ -224,12 +224,14 @@ class SwingBatch:
         probe = np.broadcast_to(pieces.probe[:, :, None], share.shape)
         designs = np.broadcast_to(np.arange(self.count)[:, None, None], share.shape)
         guide = self.states(designs, share, probe, float(pieces.back))[..., GUIDE].real
-        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & pieces.has_length[:, :, None]
+        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & pieces.have_length[:, :, None]
         design, piece, left = np.nonzero(change)
         if not len(design):
             return pieces
         low, high = share[design, piece, left], share[design, piece, left + 1]
-        roots = self._contact_shares(design, low, high, probe[design, piece, left], float(pieces.back))
+        roots = self._time_fractions_of_guide_side_changes(
+            design, low, high, probe[design, piece, left], float(pieces.back)
+        )
         rank = np.zeros(len(design), np.int64)
         for i in range(1, len(design)):
             rank[i] = rank[i - 1] + 1 if design[i] == design[i - 1] else 0
@@ -241,9 +243,11 @@ class SwingBatch:
             np.concatenate([pieces.cuts, contact_cuts], axis=1),
             np.concatenate([pieces.state, state], axis=1),
         )
-        return _sorted(Pieces(pieces.back, cuts, states_of))
+        return _sort_cuts(Pieces(pieces.back, cuts, states_of))
 
-    def _contact_shares(self, design: IntArray, low: Array, high: Array, probe: Array, back: float) -> Array:
+    def _time_fractions_of_guide_side_changes(
+        self, design: IntArray, low: Array, high: Array, probe: Array, back: float
+    ) -> Array:
         """Return the fractions between two at which the guide force is zero, by bisection and Newton's method."""
         rising = self.states(design, high, probe, back)[:, GUIDE].real > 0.0
         roots, rows = 0.5 * (low + high), np.arange(len(low))
@@ -277,7 +281,7 @@ class SwingBatch:
         return slips
 
 
-def _sorted(pieces: Pieces) -> Pieces:
+def _sort_cuts(pieces: Pieces) -> Pieces:
     order = np.argsort(pieces.cuts, axis=1, kind="stable")
     cuts = np.take_along_axis(pieces.cuts, order, axis=1)
     state = np.take_along_axis(pieces.state, order, axis=1)
@@ -295,5 +299,5 @@ def can_swing_despite_friction(mechanism: Mechanism, swing: Swing, designs: Arra
             rows_here = rows[begin:end]
             passing[rows_here] = ~SwingBatch(mechanism, swing, designs[rows_here], slopes=False).may_lock()
 
-        in_chunks(len(rows), work)
+        run_in_chunks(len(rows), work)
     return passing

@@ -50,20 +50,21 @@ class SwingCycle:
         """Return the curves at fractions (n,) of the time of one stroke."""
         return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
 
-    def greatest(self, name: str) -> SwingPoint:
+    def greatest_magnitude(self, name: str) -> SwingPoint:
         """Return the maximum magnitude of a curve over both strokes."""
-        forward, back = (self._extreme(name, way, np.abs) for way in (False, True))
+        forward, back = (self._extreme_in_stroke(name, way, np.abs) for way in (False, True))
         # If both strokes are equal up to rounding, as without friction, take the first.
         return back if abs(back.value) > abs(forward.value) * (1.0 + _EQUAL) or np.isnan(forward.value) else forward
 
-    def least(self, curve: str) -> SwingPoint:
+    def minimum_of_curve(self, curve: str) -> SwingPoint:
         """Return the minimum of a curve that is the same in both strokes."""
-        return self._extreme(curve, False, np.negative)
+        return self._extreme_in_stroke(curve, False, np.negative)
 
-    def value_range(self, curve: str) -> tuple[SwingPoint, SwingPoint]:
+    def range_of_curve(self, curve: str) -> tuple[SwingPoint, SwingPoint]:
         """Return the minimum and the maximum of a curve over both strokes; NaN if friction locks throughout."""
         lows, highs = (
-            [self._extreme(curve, way, rank, count=4) for way in (False, True)] for rank in (np.negative, np.positive)
+            [self._extreme_in_stroke(curve, way, rank, count=4) for way in (False, True)]
+            for rank in (np.negative, np.positive)
         )
         # If both strokes are equal up to rounding, take the first.
         span = max(point.value for point in highs) - min(point.value for point in lows)
@@ -72,7 +73,7 @@ class SwingCycle:
         return least, greatest
 
     @cached_property
-    def _sampled_ways(self) -> tuple[SwingCurves, SwingCurves]:
+    def _sampled_strokes(self) -> tuple[SwingCurves, SwingCurves]:
         """Curves over both strokes at many fractions of the time."""
         share = np.linspace(0.0, 1.0, _SAMPLES)
         return self.curves(share), self.curves(share, back=True)
@@ -82,15 +83,15 @@ class SwingCycle:
         """Curves between two fractions of the time, cached by stroke and fractions: many extremes coincide."""
         return {}
 
-    def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
+    def _extreme_in_stroke(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
         """Return the extreme in one stroke. count: number of the best local extremes to refine between samples."""
-        curves = self._sampled_ways[back]
-        ranks = _rank_values(getattr(curves, name), rank)
+        curves = self._sampled_strokes[back]
+        ranks = _ranked_without_nan(getattr(curves, name), rank)
         padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
         local = np.flatnonzero((ranks >= padded[:-2]) & (ranks >= padded[2:]))
         best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: count - 1].tolist()]
         candidates = [self._refine_extreme(name, back, rank, curves, row) for row in dict.fromkeys(best)]
-        return candidates[int(np.argmax(_rank_values(np.array([point.value for point in candidates]), rank)))]
+        return candidates[int(np.argmax(_ranked_without_nan(np.array([point.value for point in candidates]), rank)))]
 
     def _refine_extreme(self, name: str, back: bool, rank: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
         for _ in range(_ZOOMS):
@@ -98,32 +99,34 @@ class SwingCycle:
             if (back, low, high) not in self._zoomed_curves:
                 self._zoomed_curves[back, low, high] = self.curves(np.linspace(low, high, _ZOOMED), back=back)
             curves = self._zoomed_curves[back, low, high]
-            best = int(np.argmax(_rank_values(getattr(curves, name), rank)))
+            best = int(np.argmax(_ranked_without_nan(getattr(curves, name), rank)))
         return _point_of_sample(curves, best, back, float(getattr(curves, name)[best]))
 
-    def first_locked(self) -> SwingPoint | None:
+    def first_lockable_point(self) -> SwingPoint | None:
         """Return the first place where friction may lock the linkage, by bisection between many samples."""
         if not self.mechanism.friction.acts:
             return None
         for back in (False, True):
-            share, drive = self._sampled_ways[back].share, self._sampled_ways[back].drive
+            share, drive = self._sampled_strokes[back].share, self._sampled_strokes[back].drive
             rows = np.flatnonzero(np.isnan(drive))
             if len(rows):
                 first = int(rows[0])
                 before = share[max(first - 1, 0)]
                 at = (
-                    self._share_of_change(before, share[first], lambda curves: np.isnan(curves.drive), back)
+                    self._time_fraction_of_side_change(
+                        before, share[first], lambda curves: np.isnan(curves.drive), back
+                    )
                     if first
                     else 0.0
                 )
                 return _point_of_sample(self.curves(np.array([at]), back=back), 0, back, np.nan)
         return None
 
-    def friction_holds(self) -> bool:
+    def is_held_by_friction(self) -> bool:
         """Return whether friction alone holds the linkage throughout: zero lies between the drives of both strokes."""
         if not self.mechanism.friction.acts:
             return False
-        forward, back = self._sampled_ways
+        forward, back = self._sampled_strokes
         # The forward stroke is along the driver's direction: resistance needs a drive in that direction, and the
         # opposite on return.
         first, last = driver_start_and_end(self.linkage, self.swing)
@@ -147,12 +150,17 @@ class SwingCycle:
 
     def _cut_time_fractions(self, back: bool) -> Array:
         table = reversed_law_pieces(self.swing.points) if back else self.swing.law_pieces
-        shares = [0.0, 1.0, *corner_times(self.swing.law, table), *self._shares_at_angles(self._kink_angles(), table)]
+        shares = [
+            0.0,
+            1.0,
+            *corner_times(self.swing.law, table),
+            *self._shares_at_angles(self._crank_angles_of_kinks(), table),
+        ]
         if back:
             shares = [1.0 - share for share in shares]
-        return np.unique([*shares, *self._friction_changes(back)])
+        return np.unique([*shares, *self._time_fractions_of_friction_changes(back)])
 
-    def _kink_angles(self) -> list[float]:
+    def _crank_angles_of_kinks(self) -> list[float]:
         """Return the crank angles at which loads or friction change: knots of tables, dead centres, rod reversals."""
         linkage, swing = self.linkage, self.swing
         angles = [*dead_point_angles(linkage), 0.5 * np.pi, 1.5 * np.pi]
@@ -163,7 +171,7 @@ class SwingCycle:
             for k, load in enumerate(self.mechanism.loads):
                 knots = loads.knots[loads.start[k] : loads.start[k + 1]]
                 angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_at_positions(knots)
-        return [occurrence for angle in angles for occurrence in swing.angles_within(float(angle))]
+        return [occurrence for angle in angles for occurrence in swing.equal_angles_within_swing(float(angle))]
 
     def _angles_at_positions(self, knots: Array) -> list[float]:
         """Return the crank angles at which the slider passes given distances from the crank pivot."""
@@ -184,7 +192,7 @@ class SwingCycle:
         shares: list[float] = time_fractions_at_travel(self.swing.law, ways, table).tolist()
         return shares
 
-    def _friction_changes(self, back: bool) -> list[float]:
+    def _time_fractions_of_friction_changes(self, back: bool) -> list[float]:
         """Return the fractions of the time at which friction in the guide, or in the crank pin, changes sides."""
         if not self.mechanism.friction.acts:
             return []
@@ -197,10 +205,12 @@ class SwingCycle:
         for side in sides:
             values = side(self.curves(share, back=back))
             places = np.flatnonzero(values[:-1] != values[1:]).tolist()
-            shares += [self._share_of_change(share[i], share[i + 1], side, back) for i in places]
+            shares += [self._time_fraction_of_side_change(share[i], share[i + 1], side, back) for i in places]
         return shares
 
-    def _share_of_change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
+    def _time_fraction_of_side_change(
+        self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool
+    ) -> float:
         """Return the fraction between two at which a side changes, just past the change; by bisection."""
         after = side(self.curves(np.array([high]), back=back))[0]
         for _ in range(_BISECTIONS):
@@ -211,7 +221,7 @@ class SwingCycle:
         return float(high)
 
 
-def _rank_values(values: Array, rank: np.ufunc) -> Array:
+def _ranked_without_nan(values: Array, rank: np.ufunc) -> Array:
     return np.where(np.isnan(values), -np.inf, rank(values))
 
 

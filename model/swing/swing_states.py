@@ -90,14 +90,14 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 
 @analytic
 def _slider_drive_and_guide_force(
-    sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool
+    crank_sine: Any, crank_cosine: Any, m: Any, d: Any, load: Any, crank_couple: Any, rod_1: float, rubbing: bool
 ) -> Any:
     """Return the slider force that turns a free crank, along +x or NaN, and the guide force.
 
     on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts at a cut.
     """
-    b = add_crank_couple(balance_before_pin_force(sine, cosine, m, d, load), on_crank)
-    bx, by = frictionless_pin_force(sine, cosine, m, d, b)
+    b = add_crank_couple(balance_before_pin_force(crank_sine, crank_cosine, m, d, load), crank_couple)
+    bx, by = frictionless_pin_force(crank_sine, crank_cosine, m, d, b)
     turn = 1.0 if d.speed.real > 0.0 else -1.0
     if rubbing:
         crank_pin_side, slider_pin_side = (1.0 if rod_1 < 1.0 else -1.0), (1.0 if rod_1 > 0.0 else -1.0)
@@ -108,7 +108,7 @@ def _slider_drive_and_guide_force(
         )
         size = math.inf
         for _ in range(_NEWTON):
-            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, sine, cosine, m, d, b, sides))
+            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, crank_sine, crank_cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
             size = abs(step_x.real) + abs(step_y.real)
             if size <= _CONVERGED * (abs(bx.real) + abs(by.real)):
@@ -116,7 +116,7 @@ def _slider_drive_and_guide_force(
         if not size <= 1e-9 * (abs(bx.real) + abs(by.real)):
             bx = bx * math.nan
         else:  # the imaginary part lags one step behind
-            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, sine, cosine, m, d, b, sides))
+            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, crank_sine, crank_cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
     guide = -by - d.slider_mass * d.gravity_y
     slide = turn if m.x_1.real > 0.0 else -turn
@@ -149,7 +149,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _forward_travel_and_derivatives(path: KernelSwing, share: Any, probe: Any, back: Any) -> Any:
+def _travel_and_derivatives_in_stroke(path: KernelSwing, share: Any, probe: Any, back: Any) -> Any:
     """Return the fraction of the travel and its first three derivatives, counted forward."""
     w, w_1, w_2, w_3 = travel_and_derivatives_at(path.law, path.table, share, probe)
     if back > 0.5:
@@ -158,7 +158,7 @@ def _forward_travel_and_derivatives(path: KernelSwing, share: Any, probe: Any, b
 
 
 @analytic
-def _stepped_motion(theta: Any, step: Any, z: Any) -> Any:
+def _motion_with_imaginary_step(theta: Any, step: Any, z: Any) -> Any:
     """Return sine, cosine and motion at a crank angle with an imaginary part."""
     sine, cosine = math.sin(theta), math.cos(theta)
     zs, zc = complex(sine, cosine * step), complex(cosine, -sine * step)
@@ -221,16 +221,19 @@ def _fill_state(
     start, end = begin.real, ending.real
     turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * points.back[p])
     d, z = design_at(space.block, 0), design_at(space.stepped, 0)
-    s, s_1, s_2, _ = _forward_travel_and_derivatives(path, points.probe[p], points.probe[p], points.back[p])
+    s, s_1, s_2, _ = _travel_and_derivatives_in_stroke(path, points.probe[p], points.probe[p], points.back[p])
     probe_angle = _probe_angle(path, d, s, start, end)
-    w, w_1, w_2, w_3 = _forward_travel_and_derivatives(path, points.share[p], points.probe[p], points.back[p])
+    w, w_1, w_2, w_3 = _travel_and_derivatives_in_stroke(path, points.share[p], points.probe[p], points.back[p])
     a, a_1, a_2 = (
         complex(w, w_1 * points.slip[p]),
         complex(w_1, w_2 * points.slip[p]),
         complex(w_2, w_3 * points.slip[p]),
     )
     if path.slider:
-        begin, ending = _stepped_motion(start, begin.imag, z)[2].x, _stepped_motion(end, ending.imag, z)[2].x
+        begin, ending = (
+            _motion_with_imaginary_step(start, begin.imag, z)[2].x,
+            _motion_with_imaginary_step(end, ending.imag, z)[2].x,
+        )
     place = begin + (ending - begin) * a
     rate = (ending - begin) * a_1
     speed = rate * path.per_time
@@ -238,9 +241,9 @@ def _fill_state(
     theta, moved = place.real, place.imag
     if path.slider:
         theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, start, end)
-        at = _stepped_motion(theta, 0.0, z)[2]
+        at = _motion_with_imaginary_step(theta, 0.0, z)[2]
         moved = (place.imag - at.x.imag) / at.x_1.real
-    zs, zc, m = _stepped_motion(theta, moved, z)
+    zs, zc, m = _motion_with_imaginary_step(theta, moved, z)
     if path.slider:
         speed = speed * inverse(m.x_1)
         rise = (rise - m.x_2 * speed * speed) * inverse(m.x_1)
@@ -262,7 +265,7 @@ def _fill_state(
 
 
 @rarely_used_kernel
-def _states(
+def _fill_states(
     blocks: Cube,
     steps: ComplexCube,
     points: Points,
@@ -294,5 +297,5 @@ def swing_states(
     steps. ends: crank angles (k, 2) of both ends of the swing, with these steps.
     """
     out = np.empty((len(points.share), _STATES), np.complex128)
-    _states(blocks, steps, points, ends, loads, path, out)
+    _fill_states(blocks, steps, points, ends, loads, path, out)
     return out

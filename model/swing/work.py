@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import in_chunks
+from ..kernel.batches import run_in_chunks
 from ..machine.mechanism import Mechanism
 from ..quadrature import graded_gauss_nodes_and_weights
 from .closure import swings_without_dead_point
@@ -53,7 +53,7 @@ def net_work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Arr
 
     def both_ways(rows: Array) -> tuple[Array, Array]:
         free = SwingBatch(mechanism, swing, rows, slopes=False, free=True)
-        ways = [_work_one_way(free, free.pieces(back=back), False)[0] for back in (False, True)]
+        ways = [_work_one_way(free, free.pieces_of_stroke(back=back), False)[0] for back in (False, True)]
         total = np.add(*ways)
         return -np.where(np.abs(total) <= _EVEN * np.abs(ways[0]), 0.0, total), np.empty((len(rows), 0))
 
@@ -88,14 +88,14 @@ def _evaluate_swinging_designs(
             if gradients:
                 slopes[rows_here] = slopes_here
 
-    in_chunks(len(rows), work, size=_CHUNK)
+    run_in_chunks(len(rows), work, size=_CHUNK)
     return Work(values, slopes if gradients else None)
 
 
 def _forward_work(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     batch = SwingBatch(mechanism, swing, designs, slopes=gradients)
-    values, slopes = _work_one_way(batch, batch.pieces(back=False), gradients)
-    return values, batch.numbers.chain_to_designs(slopes[:, None])[:, 0] if gradients else slopes
+    values, slopes = _work_one_way(batch, batch.pieces_of_stroke(back=False), gradients)
+    return values, batch.numbers.gradients_by_design_numbers(slopes[:, None])[:, 0] if gradients else slopes
 
 
 def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
@@ -104,21 +104,21 @@ def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, g
         SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=is_free) for is_free in (False, True)
     )
     for back in (True, False):  # the forward stroke takes precedence
-        spent, by_spent = _work_one_way(rubbing, rubbing.pieces(back=back), gradients)
-        least, by_least = _work_one_way(free, free.pieces(back=back), gradients)
+        spent, by_spent = _work_one_way(rubbing, rubbing.pieces_of_stroke(back=back), gradients)
+        least, by_least = _work_one_way(free, free.pieces_of_stroke(back=back), gradients)
         driven = (least > 0.0) & (spent > 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.where(driven, least / spent, values)
             by_raw = (by_least - (least / spent)[:, None] * by_spent) / spent[:, None]
         if gradients:
-            slope = np.where(driven[:, None], rubbing.numbers.chain_to_designs(by_raw[:, None])[:, 0], slope)
+            slope = np.where(driven[:, None], rubbing.numbers.gradients_by_design_numbers(by_raw[:, None])[:, 0], slope)
     return values, slope
 
 
 def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one stroke (n,) and its derivatives with respect to raw numbers (n, c)."""
     u, w = graded_gauss_nodes_and_weights(_PANELS, _GRADED)
-    design, piece = np.nonzero(pieces.has_length)
+    design, piece = np.nonzero(pieces.have_length)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]
     share = a[:, None] * (1.0 - u) + b[:, None] * u
     rows = np.broadcast_to(design[:, None], share.shape)

@@ -36,7 +36,7 @@ def limits_of_sources(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the limit of each source, (8,), m; that of the crank angle in rad."""
     linkage, t = require_single_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
-        tolerance.limit(float(length))
+        tolerance.deviation_limit(float(length))
         for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
     )
     gap = t.clearances

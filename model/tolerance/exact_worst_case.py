@@ -37,7 +37,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from ..signals.panel_polynomials import angle_in_cycle
+from ..signals.panel_polynomials import wrap_into_cycle
 from .error_distributions import angle_ranges_where_error_counts, limit_box, limits_of_sources, source_influences
 
 
@@ -185,7 +185,7 @@ def worst_position_error(mechanism: Mechanism, linkage: Linkage) -> Worst:
             optimum = minimize_scalar(negative_size, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
             for size, angle in ((sizes[i], angles[i]), (-optimum.fun, optimum.x)):
                 if size > best.size:
-                    best = Worst(float(size), angle_in_cycle(float(angle), _TURN))
+                    best = Worst(float(size), wrap_into_cycle(float(angle), _TURN))
     return best
 
 

@@ -61,7 +61,7 @@ class Yield:
     confidence: float
 
 
-def simulate(
+def simulate_machines_with_errors(
     mechanism: Mechanism,
     linkage: Linkage,
     crank_angle: ArrayLike = (),
@@ -106,7 +106,7 @@ def simulate(
         random = np.random.default_rng([seed, chunk])
         rows = slice(count, min(count + CHUNK, samples))
         drawn = spreads.draw_errors(limits, CHUNK, random)
-        off = _positions(linkage, drawn, everywhere)[: rows.stop - rows.start] - ideal
+        off = _slider_positions(linkage, drawn, everywhere)[: rows.stop - rows.start] - ideal
         errors[rows] = off[:, : len(theta)]
         greatest[rows] = np.abs(off[:, len(theta) :]).max(axis=1)
         count = rows.stop
@@ -120,7 +120,7 @@ def _require_integer(name: str, value: object, *, least: int) -> None:
         raise InputError(f"{name} must be a whole number of at least {least}; got {value!r}")
 
 
-def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
+def _slider_positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
     """Return the slider positions (n, m) of machines; NaN for machines that do not rotate fully."""
     r, l = (linkage.crank + drawn.crank)[:, None], (linkage.rod + drawn.rod)[:, None]
     e = (linkage.offset + drawn.offset)[:, None]

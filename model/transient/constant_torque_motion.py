@@ -54,7 +54,7 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
     def motor_surplus(speed: Array | float) -> Array:
         return way * motor(np.multiply(way, speed))[0] - static - (drag + square * speed) * speed
 
-    law = drive.torque_law
+    law = drive.motor_torque_law
     if isinstance(law, ConstantTorque) and drag <= 0.0 and square <= 0.0:
         top = _speed_where_friction_balances(turn, motor_surplus, near)
         if top is None:
@@ -146,7 +146,7 @@ class Coasting:
     stops: bool
 
 
-def turn_by_energy_integral(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
+def periodic_motion_by_energy_integral(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
     """Return the periodic turn found by the energy integral.
 
     inertia: that of the drive, kg m^2. speed: magnitude of the mean, rad/s.

@@ -168,7 +168,7 @@ class Equation:
         """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         raise NotImplementedError
 
-    def spans_of_cycle(self, way: float) -> list[Span]:
+    def spans_in_passing_order(self, way: float) -> list[Span]:
         """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or clockwise."""
         order = range(len(self.breakpoints))
         return [self.stretch_from_breakpoint(index, way) for index in (order if way > 0.0 else reversed(order))]

@@ -11,7 +11,13 @@ import numpy as np
 from ..arrays import Array
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinder_machines import Member, cycle_turns, half_of_cycle_at, machines_of_turns, member_machines
+from ..machine.cylinders_as_machines import (
+    Member,
+    cycle_turns,
+    half_of_cycle_at,
+    machines_of_arrangement,
+    machines_of_turns,
+)
 from ..machine.mechanism import Mechanism
 from .crank_equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 from .friction_torque import (
@@ -80,7 +86,7 @@ class ShaftEquation(Equation):
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.rubs = mechanism.friction.acts
         only_member = Member(mechanism, 0.0, 0.0, 0.0)
-        self._members = (only_member,) if mechanism.arrangement is None else member_machines(mechanism)
+        self._members = (only_member,) if mechanism.arrangement is None else machines_of_arrangement(mechanism)
         self._equations = [
             [CrankEquation(half, self._linkage) for half in machines_of_turns(member.mechanism)]
             for member in self._members

@@ -70,7 +70,7 @@ def design_flywheel(
 
     def run(flywheel: float) -> SteadyRunning:
         return (
-            runner.under_constant_torque(flywheel)
+            runner.run_under_constant_torque(flywheel)
             if drive is None
             else runner.run_under_drive(replace(drive, flywheel=flywheel))
         )

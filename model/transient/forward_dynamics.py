@@ -24,7 +24,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..machine.cylinder_machines import cycle_turns
+from ..machine.cylinders_as_machines import cycle_turns
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .crank_equation import NEAREST, TURN, Span
@@ -59,7 +59,7 @@ class Progress:
 Stop = Literal["edge", "standstill", "table", "time"]
 
 
-def required_drive(mechanism: Mechanism, drive: Drive | None) -> Drive:
+def drive_or_error(mechanism: Mechanism, drive: Drive | None) -> Drive:
     """Return the drive, by default the mechanism's own. Raises `InputError` if there is no drive at all."""
     chosen = mechanism.drive if drive is None else drive
     if chosen is None:
@@ -93,16 +93,16 @@ def simulate(
     The result's `verdict` says why the motion ended. Raises `InputError` for values out of range and if nothing resists
     an acceleration, `AssemblyError` if the linkage does not rotate fully.
     """
-    drive = required_drive(mechanism, drive)
+    drive = drive_or_error(mechanism, drive)
     _require_options(duration, turns, steady, tolerance, samples)
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
     before, passed = math.nan, 0
     while True:
         verdict = run.integrate_stretch()
         if progress is not None:
-            progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
+            progress(Progress(run.time, duration, (run.total_crank_angle - start.angle) / TURN, run.speed))
         if verdict is None and run.at_mark:
-            full_turns = round((run.angle - start.angle) / TURN)
+            full_turns = round((run.total_crank_angle - start.angle) / TURN)
             if turns is not None and abs(full_turns) >= turns:
                 verdict = "turns done"
             if run.at_cycle:
@@ -163,7 +163,7 @@ class _Run:
         self.time, self.speed, self.at_mark, self.at_cycle = 0.0, start.speed, True, True
         self.works = np.zeros(3 if self.equation.rubs else 2)
         self.turned_back: list[float] = []
-        self.scale = self._speed_scale(mechanism.speed)
+        self.scale = self._speed_scale_for_errors(mechanism.speed)
         self.recorder = Recorder(self.equation, drive, linkage, mechanism, samples)
         self.way = math.copysign(1.0, start.speed) if start.speed else 0.0
         self.arrived = -self.equation.direction  # at rest, so that the motor's direction is tried first
@@ -179,12 +179,12 @@ class _Run:
     def result(self, verdict: Verdict) -> Transient:
         """Return the motion found so far, with a verdict."""
         self.recorder.add_single_state(
-            self._stretch(self.way or self.equation.direction), self.turn, self.time, self._state_vector()
+            self._stretch_in_direction(self.way or self.equation.direction), self.turn, self.time, self._state_vector()
         )
         return self.recorder.result(verdict, tuple(self.turned_back))
 
     @property
-    def angle(self) -> float:
+    def total_crank_angle(self) -> float:
         """The crank angle, rad, including full turns."""
         return self.local + self.period * self.turn
 
@@ -193,9 +193,9 @@ class _Run:
 
         Return why the motion ends, if it does.
         """
-        if self.way == 0.0 and (ended := self._leave_rest()):
+        if self.way == 0.0 and (ended := self._start_from_standstill()):
             return ended
-        stretch = self._stretch(self.way)
+        stretch = self._stretch_in_direction(self.way)
         solution, stop = self._integrate(stretch)
         self.recorder.add_solution(stretch, self.turn, solution)
         self.time = float(solution.t[-1])
@@ -210,7 +210,7 @@ class _Run:
             return "beyond the torque table" if stop == "table" else "time is up"
         return None
 
-    def _stretch(self, way: float) -> Span:
+    def _stretch_in_direction(self, way: float) -> Span:
         return self.equation.stretch_from_breakpoint(self.index, way)
 
     def _state_vector(self) -> Array:
@@ -231,10 +231,10 @@ class _Run:
         elif edge == 0:
             self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
 
-    def _speed_scale(self, speed: float) -> float:
+    def _speed_scale_for_errors(self, speed: float) -> float:
         """Return the reference speed for errors while the crank is slow, rad/s."""
         pull, resist = abs(float(self.drive.torque_on_crank(0.0, self.equation.direction))), 0.0
-        for stretch in self.equation.spans_of_cycle(self.equation.direction):
+        for stretch in self.equation.spans_in_passing_order(self.equation.direction):
             terms = stretch.terms_at(np.linspace(stretch.low, stretch.high, 9))
             pull = max(pull, float(np.abs(terms.static).max()))
             resist = max(resist, float(terms.inertia.max()) + self.drive.inertia)
@@ -296,11 +296,11 @@ class _Run:
             return float(stretch.friction_state(at, np.zeros(1), np.zeros(1)).torque[0])
         return float(stretch.terms_at(at).static[0])
 
-    def _leave_rest(self) -> Verdict | None:
+    def _start_from_standstill(self) -> Verdict | None:
         """Find the direction in which the crank starts from standstill; if it does not start, return the reason."""
         count = len(self.equation.breakpoints)
         motor = float(self.drive.torque_on_crank(0.0, self.equation.direction))
-        at_edge = abs(self.local - self._stretch(1.0).low) <= NEAREST
+        at_edge = abs(self.local - self._stretch_in_direction(1.0).low) <= NEAREST
         before = (self.index - 1) % count if at_edge else self.index
         push = {}
         for way, index in ((1.0, self.index), (-1.0, before)):

@@ -16,7 +16,9 @@ _CLOSE = 1e-12
 """rad; accuracy of the angles."""
 
 
-def guide_side_changes(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:
+def crank_angles_of_guide_side_changes(
+    span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array
+) -> list[float]:
     """Return the crank angles within a span, rad, in the order of its points.
 
     angles: (n,), rad. speeds, accelerations: motion at these angles.

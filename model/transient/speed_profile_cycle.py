@@ -22,9 +22,9 @@ from ..cycle.multi_cylinder import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinder_machines import TURN, cycle_turns
+from ..machine.cylinders_as_machines import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
-from ..signals.panel_polynomials import Extreme, angle_in_cycle, larger_extreme, resolve_curves
+from ..signals.panel_polynomials import Extreme, larger_extreme, resolve_curves, wrap_into_cycle
 
 _PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 360
@@ -139,16 +139,16 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     panels = resolve_curves(curve_rows, ends, np.where(sizes > 0.0, sizes, 1.0))
     least, greatest = panels.extremes(0)
     period = TURN * panels.mean(_TIME)
-    peaks = {name: _larger_magnitude(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
+    peaks = {name: _larger_extreme(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
     for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
         top = panels.extremes(row)[1]
-        peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), angle_in_cycle(top.angle, turns * TURN))
+        peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), wrap_into_cycle(top.angle, turns * TURN))
     way, torque = mechanism.direction, 3 + _SIZES.index("torque")
     mean = panels.mean(torque)
     return SpeedProfileCycle(
-        least_speed=Extreme(least.value, angle_in_cycle(least.angle, TURN)),
-        greatest_speed=Extreme(greatest.value, angle_in_cycle(greatest.angle, TURN)),
-        acceleration=_larger_magnitude(panels.extremes(1), 1),
+        least_speed=Extreme(least.value, wrap_into_cycle(least.angle, TURN)),
+        greatest_speed=Extreme(greatest.value, wrap_into_cycle(greatest.angle, TURN)),
+        acceleration=_larger_extreme(panels.extremes(1), 1),
         period=period,
         mean_speed=way * TURN / period,
         fluctuation=(greatest.value - least.value) * period / TURN,
@@ -159,7 +159,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     )
 
 
-def _larger_magnitude(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
+def _larger_extreme(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
     """Return the larger magnitude of both extremes."""
     top = larger_extreme(extremes, turns * TURN)
-    return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))
+    return Extreme(abs(top.value), wrap_into_cycle(top.angle, turns * TURN))

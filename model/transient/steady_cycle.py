@@ -31,7 +31,7 @@ from ..dynamics.segments import crank_angle_from_crowded, crowded_from_crank_ang
 from ..errors import InputError
 from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, NODES, WEIGHTS, last_coefficients_magnitude
 from .crank_equation import TURN, Equation, Span, Terms
-from .guide_force_changes import guide_side_changes
+from .guide_force_changes import crank_angles_of_guide_side_changes
 
 _PANELS = 40
 _STEPS = 60
@@ -95,7 +95,7 @@ class PeriodicTurn:
         low, width, angle, terms = [], [], [], []
         self.spans: list[tuple[Span, slice]] = []
         passed = 0
-        for stretch in equation.spans_of_cycle(self.way):
+        for stretch in equation.spans_in_passing_order(self.way):
             first, last = crowded_from_crank_angle(stretch.low, kappa), crowded_from_crank_angle(stretch.high, kappa)
             count = max(2, math.ceil(_PANELS * (last - first) / TURN))
             ends = np.array([crank_angle_from_crowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
@@ -275,7 +275,7 @@ class PeriodicTurn:
             speeds = np.concatenate([[first], self.way * np.sqrt(2.0 * energy[panels].ravel()), [last]])
             rates = np.concatenate([[first_rate], rate[panels].ravel(), [last_rate]])
             angles = np.concatenate([edges[:1], self.angle[panels].ravel(), edges[1:]])
-            contacts_found += guide_side_changes(span, motion, angles, speeds, rates)
+            contacts_found += crank_angles_of_guide_side_changes(span, motion, angles, speeds, rates)
         contacts_found.sort()
         contacts_before = self.contacts
         if (

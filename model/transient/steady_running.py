@@ -14,12 +14,12 @@ from ..quadrature import WEIGHTS
 from .constant_torque_motion import (
     balanced_speed,
     cut_at_energy_minima,
+    periodic_motion_by_energy_integral,
     refine_at_energy_minima,
-    turn_by_energy_integral,
 )
 from .crank_equation import TURN
 from .crankshaft_equation import equation_of
-from .forward_dynamics import required_drive
+from .forward_dynamics import drive_or_error
 from .simulated_motion import MotorRun
 from .steady_cycle import Guess, PeriodicTurn, Profile, Torque
 
@@ -84,7 +84,7 @@ class Runner:
             )
         return running
 
-    def under_constant_torque(self, inertia: float) -> SteadyRunning:
+    def run_under_constant_torque(self, inertia: float) -> SteadyRunning:
         """Return the steady running under the constant torque that maintains the mechanism's speed as the mean.
 
         inertia: inertia of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result.
@@ -95,14 +95,14 @@ class Runner:
         self.equation.require_inertia(inertia)
 
         def guess(turn: PeriodicTurn) -> Guess | None:
-            coast = turn_by_energy_integral(turn, inertia, self.speed)
+            coast = periodic_motion_by_energy_integral(turn, inertia, self.speed)
             if coast.guess is None or coast.stops:
                 return turn.constant_speed_guess(self.speed) if self.viscous else None
             return coast.guess
 
         turn, solved = self.turn, None
         for finer in (cut_at_energy_minima, refine_at_energy_minima):
-            turn = finer(turn, turn_by_energy_integral(turn, inertia, self.speed).load)
+            turn = finer(turn, periodic_motion_by_energy_integral(turn, inertia, self.speed).load)
             solved = turn.solve_on_fine_panels(_zero_motor_torque, inertia, guess, mean_speed=self.speed)
             if solved is not None:
                 break
@@ -120,15 +120,17 @@ class Runner:
         """Return the minimum and maximum speed, rad/s, under the constant torque that maintains the mean speed.
 
         The minimum speed is 0 if the crank nearly stops: below a millionth of the maximum. inertia: see
-        `under_constant_torque`. Raises `InputError` if the inertia is zero at some crank angle, so that speeds are
+        `run_under_constant_torque`. Raises `InputError` if the inertia is zero at some crank angle, so that speeds are
         undefined, or if no steady running is found with viscous loads or friction.
         """
         self.equation.require_inertia(inertia)
         try:
-            running = self.under_constant_torque(inertia)
+            running = self.run_under_constant_torque(inertia)
         except InputError:
-            turn = cut_at_energy_minima(self.turn, turn_by_energy_integral(self.turn, inertia, self.speed).load)
-            coast = turn_by_energy_integral(turn, inertia, self.speed)
+            turn = cut_at_energy_minima(
+                self.turn, periodic_motion_by_energy_integral(self.turn, inertia, self.speed).load
+            )
+            coast = periodic_motion_by_energy_integral(turn, inertia, self.speed)
             if self.viscous or coast.guess is None or not coast.stops:
                 raise
             energy, start, added = coast.guess
@@ -162,7 +164,7 @@ class Runner:
 
         def motor(speed: Array) -> tuple[Array, Array]:
             speed_in_range = way * np.clip(way * speed, slowest, fastest)
-            slope = drive.gear_ratio**2 * drive.torque_law.torque_slope(drive.gear_ratio * way * speed_in_range)
+            slope = drive.gear_ratio**2 * drive.motor_torque_law.torque_slope(drive.gear_ratio * way * speed_in_range)
             return drive.torque_on_crank(speed_in_range, way), np.where(speed_in_range == speed, slope, 0.0)
 
         return motor
@@ -176,7 +178,7 @@ def _steady_result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia:
     cycle_angle = turn.equation.period
     time_per_angle = turn.way / np.sqrt(2.0 * profile.energy)
     period = float(turn.width @ (time_per_angle @ WEIGHTS))
-    angle, time, energy, acceleration = _panel_points(turn, profile, time_per_angle, period)
+    angle, time, energy, acceleration = _curves_at_panel_points(turn, profile, time_per_angle, period)
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
     at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
@@ -195,7 +197,7 @@ def _steady_result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia:
     )
 
 
-def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
+def _curves_at_panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
     """Return angle, time, E and its derivative at starts, nodes and extremes of all panels, (4, count), in order.
 
     The first point is repeated at the end, a cycle later.
@@ -228,4 +230,4 @@ def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None =
     speed. Raises `InputError` if there is none: the motor is too weak, nothing limits the speed, or the torque table
     ends too soon.
     """
-    return Runner(mechanism, linkage).run_under_drive(required_drive(mechanism, drive))
+    return Runner(mechanism, linkage).run_under_drive(drive_or_error(mechanism, drive))

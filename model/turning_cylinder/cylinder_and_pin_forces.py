@@ -21,7 +21,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
-from ..machine.lever_cylinder import Cylinder, buckling_number
+from ..machine.lever_cylinder import Cylinder, euler_load_times_squared_length
 from ..machine.lever_spring import LeverSpring
 from ..machine.loads.load import require_word
 from ..swing.swing_types import LeverLaw
@@ -161,7 +161,7 @@ def numbers_of_machine(
         cylinder.seal_friction,
         *(cylinder.areas or (math.nan, math.nan)),
         math.nan if cylinder.supply_pressure is None else cylinder.supply_pressure,
-        math.nan if cylinder.rod is None else buckling_number(cylinder.rod, cylinder.modulus),
+        math.nan if cylinder.rod is None else euler_load_times_squared_length(cylinder.rod, cylinder.modulus),
         ram=machine.ram,
     )
     spring = machine.spring

@@ -28,7 +28,7 @@ from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import AssemblyError, InputError
 from ..kernel.arithmetic import analytic, arctangent, inverse, magnitude, root
-from ..swing.angle_remedy import smaller_swing
+from ..swing.angle_remedy import remedy_with_nearer_angles
 
 _TURN = 2.0 * math.pi
 Vectors = NDArray[np.complex128]
@@ -105,7 +105,7 @@ class TurningCylinder:
         if abs(end - start) >= math.pi:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
-                f"{_degrees_text(start)} to {_degrees_text(end)}; {smaller_swing(start, end)}"
+                f"{_degrees_text(start)} to {_degrees_text(end)}; {remedy_with_nearer_angles(start, end)}"
             )
         dead = self.dead_points(start, end)
         if dead:

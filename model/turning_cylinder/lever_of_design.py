@@ -7,7 +7,7 @@ from ..cycle.cycle import derived_design
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from ..swing.swing import CRANK_TURN, Swing, with_start_of_machine
+from ..swing.swing import CRANK_TURN, Swing, with_start_set_by_machine
 from .crank_turn_state import TurnState, fast_stroke_ends, place_in_turn, turn_state
 from .cylinder_and_pin_forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from .lever_geometry import DimensionErrors, TurningCylinder
@@ -35,7 +35,7 @@ def lever_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> LeverSw
         before, after = (float(angle) for angle in fast_stroke_ends(sizes))
         zero = sizes.frame_angle - sizes.pin_angle
         return LeverSwing(zero - before, zero + after, of_full_turn=True)
-    placed = with_start_of_machine(mechanism, swing)
+    placed = with_start_set_by_machine(mechanism, swing)
     if placed.law == "table":
         raise InputError("the law of a lever's swing must be given by name; got a table; name a law such as cycloidal")
     return LeverSwing(placed.start, placed.end, placed.law, placed.duration)
@@ -65,7 +65,7 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     cylinder = mechanism.lever.cylinder
     ends = float(sizes.cylinder_length(placed.start)), float(sizes.cylinder_length(placed.end))
     shortest, longest = sorted(sizes.closable_length_range if placed.of_full_turn else ends)
-    known = cylinder.closed_and_stroke(longest - shortest)
+    known = cylinder.closed_length_and_stroke(longest - shortest)
     length = shortest if known is None else known[0]
     machine = LeverMachine(
         sizes=sizes,

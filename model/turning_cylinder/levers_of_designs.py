@@ -10,12 +10,12 @@ from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP, magnitude
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design
-from ..machine.lever_cylinder import buckling_number, piston_areas
+from ..machine.lever_cylinder import euler_load_times_squared_length, piston_areas
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch, memoise_by_machine
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import LEVER, SPRING, START, RawNumbers, raw_machine_numbers
-from ..machine.varying_numbers import number_at
+from ..machine.varying_numbers import number_at_path
 from ..swing.swing import Swing
 from .curve_peaks import LeverBatch, table_of_numbers
 from .lever_state import LeverNumbers
@@ -86,7 +86,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, raw_numbers_b
         *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
         *of_block("crank_error", "rod_error", "offset_error"),
         *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
-        *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
+        *(cylinder.supply_pressure, euler_load_times_squared_length(rod, cylinder.modulus)),
         *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
         *(() if machine.lever is None or machine.lever.spring is None else map(part, SPRING)),
     )
@@ -99,7 +99,7 @@ def _nominal_numbers(mechanism: Mechanism) -> dict[str, float]:
     """Return the numbers of a lever by name; NaN for those that are not given."""
     has_spring = mechanism.lever is not None and mechanism.lever.spring is not None
     names = [name for name in LEVER if has_spring or name not in SPRING]
-    numbers = {name: number_at(mechanism.nominal, f"lever.{name}") for name in names}
+    numbers = {name: number_at_path(mechanism.nominal, f"lever.{name}") for name in names}
     return {name: np.nan if number is None else number for name, number in numbers.items()}
 
 

@@ -92,7 +92,7 @@ def summarise_swing(
     if cylinder.rod is not None and push.value > 0.0:
         share = greatest["buckling_share"]
         buckling = LeverPoint(1.0 / share.value, share.lever_angle, share.length)
-        cylinder.require_stiffness(buckling.value, buckling.length)
+        cylinder.require_no_buckling(buckling.value, buckling.length)
     return LeverSummary(
         lengths=(first, last),
         mounting=cylinder.mounting,
@@ -121,7 +121,7 @@ def summarise_swing(
 
 
 def _fitting_sizes(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder) -> tuple[float, float] | None:
-    sizes, known = machine.sizes, cylinder.closed_and_stroke(0.0)
+    sizes, known = machine.sizes, cylinder.closed_length_and_stroke(0.0)
     if known is None or cylinder.stroke is None:
         return None
     lengths = known[0], sum(known)

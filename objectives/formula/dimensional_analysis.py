@@ -31,7 +31,7 @@ class _Part:
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
     @property
-    def plain(self) -> bool:
+    def is_dimensionless(self) -> bool:
         return not any(self.powers.values())
 
 
@@ -73,7 +73,7 @@ class _Dimensions:
                         "only values of "
                         "one kind can be combined; correct the names, or give numbers their units"
                     )
-            return _Part(first.powers, written, _constant_value(function, arguments))
+            return _Part(first.powers, written, _constant_exponent_value(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
             powers = {base: Fraction(0) for base in (*first.powers, *last.powers)}
@@ -82,7 +82,7 @@ class _Dimensions:
             return _Part(
                 {base: power for base, power in powers.items() if power},
                 written,
-                _constant_value(function, arguments),
+                _constant_exponent_value(function, arguments),
             )
         if function == "**":
             return _Part(_raised_to_power(first, last, text), written)
@@ -97,22 +97,22 @@ class _Dimensions:
                 )
             return _Part({}, written)
         if function in INVERSES:
-            if not first.plain:
+            if not first.is_dimensionless:
                 raise InputError(
                     f"{function} needs a ratio; got {text} of {_unit_symbol(first.powers)}; "
                     "divide by a value of the same kind"
                 )
             return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
-        return _Part(first.powers, written, _constant_value(function, arguments))  # neg, abs
+        return _Part(first.powers, written, _constant_exponent_value(function, arguments))  # neg, abs
 
 
 def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
-    if not exponent.plain:
+    if not exponent.is_dimensionless:
         raise InputError(
             f"an exponent must be a ratio; got {text} with one in {_unit_symbol(exponent.powers)}; divide it by a "
             "value of the same kind"
         )
-    if base.plain:
+    if base.is_dimensionless:
         return {}
     if exponent.value is None:
         raise InputError(
@@ -123,7 +123,7 @@ def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
 
 
-def _constant_value(function: str, arguments: list[_Part]) -> Fraction | None:
+def _constant_exponent_value(function: str, arguments: list[_Part]) -> Fraction | None:
     """Return the value of an exponent such as 1/3; None if it is not a number, or is too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]

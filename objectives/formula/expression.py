@@ -141,7 +141,7 @@ class Linear:
         """The names on which it depends."""
         return tuple(name for name, _ in self.factors)
 
-    def plus(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
+    def plus_multiple_of(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
         """Return the sum with a multiple of another linear formula."""
         factors = dict(self.factors)
         for name, factor in addend.factors:
@@ -149,9 +149,9 @@ class Linear:
         nonzero = tuple((name, factor) for name, factor in factors.items() if factor)
         return Linear(nonzero, self.constant + times * addend.constant)
 
-    def times(self, factor: Fraction) -> Linear:
+    def multiplied_by(self, factor: Fraction) -> Linear:
         """Return a multiple."""
-        return Linear((), Fraction(0)).plus(self, factor) if factor else Linear((), Fraction(0))
+        return Linear((), Fraction(0)).plus_multiple_of(self, factor) if factor else Linear((), Fraction(0))
 
 
 @dataclass(frozen=True)
@@ -172,27 +172,27 @@ class _LinearAlgebra:
             return None
         first, last = linear[0], linear[-1]
         if function == "neg":
-            return first.times(Fraction(-1))
+            return first.multiplied_by(Fraction(-1))
         if function in ("+", "-"):
-            return first.plus(last, Fraction(1 if function == "+" else -1))
+            return first.plus_multiple_of(last, Fraction(1 if function == "+" else -1))
         if function == "*" and not (first.factors and last.factors):
-            return first.times(last.constant) if not last.factors else last.times(first.constant)
+            return first.multiplied_by(last.constant) if not last.factors else last.multiplied_by(first.constant)
         if function == "/" and not last.factors and last.constant:
-            return first.times(1 / last.constant)
+            return first.multiplied_by(1 / last.constant)
         if function == "abs" and first == Linear((("offset", Fraction(1)),), Fraction(0)):
             return Linear(((SIZE, Fraction(1)),), Fraction(0))
         return None
 
 
-def linear_of(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
+def linear_form_of_node(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
     """Return a formula as linear in the names that it contains; None if it is not linear.
 
-    definitions: linear formulas by name; `linear_unknown` gives those for dimensions and variables.
+    definitions: linear formulas by name; `linear_form_of_unknown` gives those for dimensions and variables.
     """
     return evaluate_in_algebra(node, _LinearAlgebra(definitions))
 
 
-def linear_unknown(name: str) -> Linear:
+def linear_form_of_unknown(name: str) -> Linear:
     """Return a dimension or a variable as a linear formula."""
     return Linear(((name, Fraction(1)),), Fraction(0))
 

@@ -12,13 +12,13 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_numbers_of_designs import unit_of_number
 from ..bounds_over_ranges import CLEAR, KnownBounds, QuantityBounds
 from ..bounds_over_ranges import LengthRanges as Box
-from ..kinds import LENGTH, Kind, kind_in
+from ..kinds import LENGTH, Kind, kind_displayed_in
 from ..quantity import Quantity
 from ..registry import FACTS, QUANTITIES, first_names_text
 from ..units import (
     closest_word,
     dimension_of,
-    is_value,
+    is_number_with_any_unit,
     kind_of_any_unit,
     kind_of_symbol,
     number_in_si,
@@ -27,7 +27,16 @@ from ..units import (
     value_of_one_si_unit_in,
 )
 from .dimensional_analysis import kind_of_formula
-from .expression import ARGUMENTS, Linear, Name, Node, formula_text, linear_of, linear_unknown, names_in
+from .expression import (
+    ARGUMENTS,
+    Linear,
+    Name,
+    Node,
+    formula_text,
+    linear_form_of_node,
+    linear_form_of_unknown,
+    names_in,
+)
 from .parser import parse
 from .quantity import FormulaQuantity, basic_quantities, column_key_of_formula
 from .ranges import FormulaBounds, Interval
@@ -63,7 +72,7 @@ class Units:
             return False
         return True
 
-    def si(self, digits: str, unit: str) -> float:
+    def number_in_si(self, digits: str, unit: str) -> float:
         """Return a number in SI. Raises InputError for an unknown unit."""
         first = unit.split(" ")[0]
         if first in self.names:
@@ -76,7 +85,7 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 
     names: names that bounds may use besides the quantities available in every job.
     """
-    if is_value(text):
+    if is_number_with_any_unit(text):
         return False
     known_names = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
     return any(
@@ -151,12 +160,12 @@ class Formulas:
         self._has_ranges = ranges is not None
         self._intervals = {name: Interval(ends.lower, ends.upper) for name, ends in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
-        self._linears: dict[str, Linear | None] = {name: linear_unknown(name) for name in self._places}
+        self._linears: dict[str, Linear | None] = {name: linear_form_of_unknown(name) for name in self._places}
         self._units = Units(frozenset((*self._quantities, *self._places, *named)))
         for name in named:
-            self._resolve_named(name)
+            self._resolve_stated_formula(name)
 
-    def quantity(self, text: str, key: str) -> Quantity:
+    def quantity_of_text(self, text: str, key: str) -> Quantity:
         """Return the quantity for a name or a formula. key: key in the job, for messages.
 
         Raises JobError for an error in it, or if every design would have the same value.
@@ -165,14 +174,14 @@ class Formulas:
             quantity = self._resolve_text(text)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
-        if isinstance(quantity, FormulaQuantity) and quantity.constant and not basic_quantities([quantity]):
+        if isinstance(quantity, FormulaQuantity) and quantity.is_constant and not basic_quantities([quantity]):
             raise JobError(
                 f"{key}: a formula must name a quantity, dimension or variable; got {quantity.formula}, which is "
                 "the same for every design; leave it out"
             )
         return quantity
 
-    def bound(self, quantity: Quantity, value: object, key: str) -> tuple[Quantity, float]:
+    def quantity_and_bound(self, quantity: Quantity, value: object, key: str) -> tuple[Quantity, float]:
         """Return the quantity and its bound; if the bound is a formula, return their difference and 0.
 
         Raises JobError.
@@ -197,7 +206,7 @@ class Formulas:
             )
         return self.formula_quantities[name]
 
-    def _resolve_named(self, name: str) -> FormulaQuantity:
+    def _resolve_stated_formula(self, name: str) -> FormulaQuantity:
         """Return the quantity for a named formula, after resolving the formulas that it names. Raises JobError."""
         if name in self.formula_quantities:
             return self.formula_quantities[name]
@@ -227,7 +236,7 @@ class Formulas:
                 f"quantity.{name}.unit: a formula must be shown in a unit of its kind; got {quote(unit)} for "
                 f'{formula.kind.name}; write it like "{formula.kind.metric.symbol}", or leave it out'
             )
-        kind = kind_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit))
+        kind = kind_displayed_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit))
         return self._formula_quantity(node, formula.name, title=formula.title, key=formula.key, kind=kind)
 
     def _formula_quantity(
@@ -244,7 +253,7 @@ class Formulas:
         interval = self._bounds_of_formula(node, parts)
         wider = f"a wider range of {' or of '.join(DIMENSIONS)}"
         self._intervals[name] = interval
-        self._linears[name] = linear_of(node, self._linears)
+        self._linears[name] = linear_form_of_node(node, self._linears)
         text = formula_text(node)
         return FormulaQuantity(
             name=name,
@@ -273,8 +282,8 @@ class Formulas:
                 self._intervals[part.name] = self._bounds_of_quantity(part)
                 self._linears.setdefault(part.name, None)
         linears = self._linears if self._turning else dict.fromkeys(self._linears)
-        off_zero = {name: self._remedy_for_zero(name) for name in names_in(node)}
-        return FormulaBounds(self._intervals, linears, off_zero).bounds(node)
+        off_zero = {name: self._remedy_for_zero_divisor(name) for name in names_in(node)}
+        return FormulaBounds(self._intervals, linears, off_zero).bounds_of_formula(node)
 
     def _known_sign_of(self, name: str) -> int:
         interval = self._intervals.get(name, Interval(-1.0, 1.0))
@@ -282,7 +291,7 @@ class Formulas:
 
     def _resolve_name(self, name: str, formula: str) -> Quantity:
         if name in self._stated:
-            return self._resolve_named(name)
+            return self._resolve_stated_formula(name)
         if name in self._quantities:
             return self._quantities[name]
         if name in FACTS:
@@ -304,17 +313,17 @@ class Formulas:
         lower, upper = length_bounds.compute(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
         return Interval(lower, upper, sign_interval.excludes_zero)
 
-    def _remedy_for_zero(self, name: str) -> str:
+    def _remedy_for_zero_divisor(self, name: str) -> str:
         """Return advice on how to keep a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]
-            return f"keep variables.{name} away from zero: its range is {_ends_text(interval, self._kinds[name])}"
+            return f"keep variables.{name} away from zero: its range is {_interval_text(interval, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
             return f"use {instead} instead: work output divided by work input, also for prime movers such as engines"
         return "divide by a quantity that is never zero, or constrain the product instead"
 
 
-def _ends_text(interval: Interval, kind: Kind) -> str:
+def _interval_text(interval: Interval, kind: Kind) -> str:
     unit = kind.metric
     return f"{interval.lower * unit.factor:.6g} to {interval.upper * unit.factor:.6g} {unit.symbol}".rstrip()

@@ -37,11 +37,11 @@ class Side:
     present: Mask
 
     @property
-    def active(self) -> Side:
+    def active_piece(self) -> Side:
         """Only the active piece."""
         return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.present[:, :1])
 
-    def take(self, places: IntArray) -> Side:
+    def select_pieces(self, places: IntArray) -> Side:
         """Return the pieces at indices (n, m), row by row."""
         return Side(
             np.take_along_axis(self.values, places, axis=1),
@@ -50,13 +50,13 @@ class Side:
             np.take_along_axis(self.present, places, axis=1),
         )
 
-    def padded(self, width: int) -> Side:
+    def padded_to_width(self, width: int) -> Side:
         """Return the side padded to `width` with absent pieces."""
         widths = [(0, 0), (0, width - self.values.shape[1])]
         values, labels, present = np.pad(self.values, widths), np.pad(self.labels, widths), np.pad(self.present, widths)
         return Side(values, np.pad(self.gradients, [*widths, (0, 0)]), labels, present)
 
-    def ordered(self, *, from_above: bool) -> Side:
+    def ordered_pieces(self, *, from_above: bool) -> Side:
         """Return the pieces in order, without impossible pieces; the active piece stays first.
 
         A function that is not increasing all the way between two pieces can lift a piece beyond the active one.
@@ -68,7 +68,7 @@ class Side:
         sort_keys = np.where(right, -self.values if from_above else self.values, np.inf)
         sort_keys[:, 0] = -np.inf
         order = np.argsort(sort_keys, axis=1, kind="stable")[:, :_MOST_PIECES]
-        return replace(self, present=right).take(order)
+        return replace(self, present=right).select_pieces(order)
 
 
 @dataclass(frozen=True)
@@ -91,19 +91,25 @@ class TwoSided:
         same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
         if known_sign:
             side = same if known_sign > 0 else swapped
-            return _choose_side(known_sign * slope >= 0.0, side, side.active.padded(side.values.shape[1]))
+            return _choose_side(
+                known_sign * slope >= 0.0, side, side.active_piece.padded_to_width(side.values.shape[1])
+            )
         width = max(same.values.shape[1], swapped.values.shape[1])
-        return same if width == 1 else _choose_side(slope >= 0.0, same.padded(width), swapped.padded(width))
+        return (
+            same
+            if width == 1
+            else _choose_side(slope >= 0.0, same.padded_to_width(width), swapped.padded_to_width(width))
+        )
 
 
 def pieces_from_above_and_below(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     """Return a quantity's pieces from both sides. factor: label factor, which makes the labels of sums distinct."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
-    ordered = pieces.take(places)
+    ordered = pieces.select_pieces(places)
     side = Side(ordered.values, ordered.gradients, factor * ordered.labels, np.isfinite(ordered.values))
     if pieces.opposite is None:
-        return TwoSided(side.active, side, sign) if least else TwoSided(side, side.active, sign)
+        return TwoSided(side.active_piece, side, sign) if least else TwoSided(side, side.active_piece, sign)
     opposite = pieces_from_above_and_below(pieces.opposite, factor, sign)
     return TwoSided(opposite.from_above, side, sign) if least else TwoSided(side, opposite.from_below, sign)
 
@@ -140,7 +146,7 @@ class Kinks:
                 item.side_seen_by_function(slope, up, from_above=from_above)
                 for item, slope, up in zip(arguments, slopes, signs, strict=True)
             ]
-            sides.append(_combine_pieces(function, argument_sides).ordered(from_above=from_above))
+            sides.append(_combine_pieces(function, argument_sides).ordered_pieces(from_above=from_above))
         return TwoSided(sides[0], sides[1], sign)
 
 
@@ -227,15 +233,15 @@ def _extreme_of_parts(function: str, arguments: list[TwoSided]) -> TwoSided:
     tops = np.stack([item.values[:, 0] for item in wide])
     first = (np.argmax if greatest else np.argmin)(tops, axis=0)
     width = max(item.values.shape[1] for item in wide)
-    all_of = [item.padded(width) for item in wide]
+    all_of = [item.padded_to_width(width) for item in wide]
     together = Side(*(np.concatenate([getattr(s, f) for s in all_of], axis=1) for f in Side.__dataclass_fields__))
     places = np.argsort(np.arange(together.values.shape[1]) != (first * width)[:, None], axis=1, kind="stable")
-    together = together.take(places).ordered(from_above=greatest)
+    together = together.select_pieces(places).ordered_pieces(from_above=greatest)
     narrow_sides = [item.from_below if greatest else item.from_above for item in arguments]
     width = max(item.values.shape[1] for item in narrow_sides)
-    narrow = narrow_sides[0].padded(width)
+    narrow = narrow_sides[0].padded_to_width(width)
     for place, item in enumerate(narrow_sides[1:], start=1):
-        narrow = _choose_side(first == place, item.padded(width), narrow)
+        narrow = _choose_side(first == place, item.padded_to_width(width), narrow)
     signs = {item.sign for item in arguments}
     sign = (
         1 if greatest and 1 in signs else -1 if not greatest and -1 in signs else signs.pop() if len(signs) == 1 else 0

@@ -39,7 +39,7 @@ class Units(Protocol):
         """Return whether a name after a number is a unit."""
         ...
 
-    def si(self, digits: str, unit: str) -> float:
+    def number_in_si(self, digits: str, unit: str) -> float:
         """Return a number in SI. Raises `InputError`, whose message begins with the unit, for an unknown unit."""
         ...
 
@@ -53,7 +53,7 @@ def parse(text: str, units: Units) -> Node:
     if len(text) > LONGEST:
         raise InputError(f"a formula has at most {LONGEST} characters; got {len(text)}; give parts of it names")
     reader = _Reader(text.translate(_SAME), units)
-    node = reader.sum()
+    node = reader.read_sum()
     if reader.next.text:
         reader.raise_error(f"one of + - * / ** is missing before {reader.next.text}")
     return node
@@ -73,9 +73,9 @@ class _Reader:
         self.text, self.units = text, units
         self.depth = self.calls = 0
         self.next = _Token("", "", 0)
-        self.step(0)
+        self.advance_to_next_token(0)
 
-    def step(self, place: int | None = None) -> None:
+    def advance_to_next_token(self, place: int | None = None) -> None:
         """Move to the token after a position, by default the current one."""
         place = self.next.end if place is None else place
         match = _TOKEN.match(self.text, place)
@@ -86,12 +86,12 @@ class _Reader:
         else:
             self.next = _Token("end", "", len(self.text))
 
-    def take(self, *signs: str) -> str | None:
+    def take_operator(self, *signs: str) -> str | None:
         """Return the next operator if it is one of `signs`, and move past it; None otherwise."""
         sign = self.next.text
         if self.next.kind != "sign" or sign not in signs:
             return None
-        self.step()
+        self.advance_to_next_token()
         return sign
 
     def raise_error(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
@@ -106,7 +106,7 @@ class _Reader:
                 f"brackets, functions and signs must be nested at most {DEEPEST} deep", "give parts of it names"
             )
 
-    def call(self, function: str, *arguments: Node) -> Call:
+    def counted_call(self, function: str, *arguments: Node) -> Call:
         self.calls += 1
         if self.calls > _MOST:
             self.raise_error(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
@@ -114,86 +114,86 @@ class _Reader:
 
     # ---- one method for each level of binding strength ---------------------------------------------------------------
 
-    def sum(self) -> Node:
+    def read_sum(self) -> Node:
         self.enter_nesting()
-        node = self.product()
-        while sign := self.take("+", "-"):
-            node = self.call(sign, node, self.product())
+        node = self.read_product()
+        while sign := self.take_operator("+", "-"):
+            node = self.counted_call(sign, node, self.read_product())
         self.depth -= 1
         return node
 
-    def product(self) -> Node:
-        node = self.signed()
-        while sign := self.take("*", "/"):
-            node = self.call(sign, node, self.signed())
+    def read_product(self) -> Node:
+        node = self.read_signed()
+        while sign := self.take_operator("*", "/"):
+            node = self.counted_call(sign, node, self.read_signed())
         return node
 
-    def signed(self) -> Node:
+    def read_signed(self) -> Node:
         minus = False
-        while sign := self.take("+", "-"):
+        while sign := self.take_operator("+", "-"):
             minus ^= sign == "-"
-        node = self.power()
+        node = self.read_power()
         if not minus:
             return node
         if isinstance(node, Number) and not node.digits.startswith("-"):
             return Number(-node.si, f"-{node.digits}", node.unit)
-        return self.call("neg", node)
+        return self.counted_call("neg", node)
 
-    def power(self) -> Node:
+    def read_power(self) -> Node:
         node = self.read_atom()
-        if not self.take("**", "^"):
+        if not self.take_operator("**", "^"):
             return node
         self.enter_nesting()
-        node = self.call("**", node, self.signed())
+        node = self.counted_call("**", node, self.read_signed())
         self.depth -= 1
         return node
 
     def read_atom(self) -> Node:
         token = self.next
         if token.kind == "number":
-            return self.number()
+            return self.read_number()
         if token.kind == "name":
-            self.step()
-            return self.function(token.text) if self.next.text == "(" else Name(token.text)
-        if self.take("("):
-            node = self.sum()
-            self.close()
+            self.advance_to_next_token()
+            return self.read_function_call(token.text) if self.next.text == "(" else Name(token.text)
+        if self.take_operator("("):
+            node = self.read_sum()
+            self.require_closing_bracket()
             return node
         if token.kind == "end":
             self.raise_error("a number, a name or a bracket is missing at its end")
         self.raise_error(f"a number, a name or a bracket is missing before {token.text}")
 
-    def close(self) -> None:
-        if not self.take(")"):
+    def require_closing_bracket(self) -> None:
+        if not self.take_operator(")"):
             self.raise_error("every opening bracket must be closed")
 
-    def function(self, name: str) -> Node:
+    def read_function_call(self, name: str) -> Node:
         if name not in ARGUMENTS:
             self.raise_error(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is not one of them")
-        self.step()
-        arguments = [self.sum()]
-        while self.take(","):
-            arguments.append(self.sum())
-        self.close()
+        self.advance_to_next_token()
+        arguments = [self.read_sum()]
+        while self.take_operator(","):
+            arguments.append(self.read_sum())
+        self.require_closing_bracket()
         least, greatest = ARGUMENTS[name]
         if not least <= len(arguments) <= greatest:
             count = "one argument" if greatest == 1 else f"{least} to {greatest} arguments, with commas between"
             self.raise_error(f"{name} takes {count}", f"it has {len(arguments)}")
-        return self.call(name, *arguments)
+        return self.counted_call(name, *arguments)
 
     # ---- numbers ---------------------------------------------------------------------------------------------------
 
-    def number(self) -> Node:
+    def read_number(self) -> Node:
         digits, place = self.next.text, self.next.end
-        unit, place = self.unit(place)
+        unit, place = self.read_unit(place)
         try:
-            si = self.units.si(digits, unit)
+            si = self.units.number_in_si(digits, unit)
         except InputError as error:
             self.raise_error(str(error))
-        self.step(place)
+        self.advance_to_next_token(place)
         return Number(si, digits, unit)
 
-    def unit(self, place: int) -> tuple[str, int]:
+    def read_unit(self, place: int) -> tuple[str, int]:
         """Return the unit at a position, "" if there is none, and the position after it."""
         text = ""
         match = _NEXT_UNIT.match(self.text, place)

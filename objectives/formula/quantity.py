@@ -13,10 +13,19 @@ import numpy as np
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_numbers_of_designs import require_design_columns
-from ...model.machine.varying_numbers import Varying, number_at
+from ...model.machine.varying_numbers import Varying, number_at_path
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
-from .expression import Call, Linear, Name, Node, Slopes, evaluate_in_algebra, linear_of, linear_unknown
+from .expression import (
+    Call,
+    Linear,
+    Name,
+    Node,
+    Slopes,
+    evaluate_in_algebra,
+    linear_form_of_node,
+    linear_form_of_unknown,
+)
 from .kinks import Kinks, TwoSided, pieces_from_above_and_below, pieces_of_formula, single_smooth_piece
 
 _GOLDEN = 0.6180339887498949  # parts' labels are added with incommensurate factors, so that they hardly ever coincide
@@ -63,9 +72,9 @@ class FormulaQuantity(Quantity):
         return all(part.depends_only_on_dimensions for part in self.parts) and not self.varying
 
     @property
-    def constant(self) -> bool:
+    def is_constant(self) -> bool:
         """Whether it is the same for all designs of one machine: it contains only numbers and amounts."""
-        return all(part.constant for part in self.parts) and not self.dimensions and not self.varying
+        return all(part.is_constant for part in self.parts) and not self.dimensions and not self.varying
 
     @property
     def component_quantities(self) -> tuple[Quantity, ...]:
@@ -148,7 +157,7 @@ class FormulaQuantity(Quantity):
                 yield item.name, designs[:, place].astype(np.float64), place
             else:
                 path, factor = item.sets[0]
-                number = number_at(mechanism, path)
+                number = number_at_path(mechanism, path)
                 yield item.name, np.full(len(designs), math.nan if number is None else number / factor), None
 
 
@@ -156,37 +165,43 @@ def _unit_gradient(n: int, d: int, place: int | None) -> Array:
     return np.tile(np.arange(d) == place, (n, 1)).astype(np.float64)
 
 
-def equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
+def linear_equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
     """Return the linear equation that sets a formula equal to a value.
 
     None if the formula is not linear in dimensions and numbers.
 
     A quotient of two linear formulas gives one, too.
     """
-    definitions, node = _named_linears(formula), formula.expression
+    definitions, node = _linear_forms_by_name(formula), formula.expression
     if isinstance(node, Call) and node.function == "/":
-        numerator, denominator = (linear_of(item, definitions) for item in node.arguments)
-        return None if numerator is None or denominator is None else numerator.plus(denominator, -Fraction(value))
-    equation = linear_of(node, definitions)
-    return None if equation is None else equation.plus(Linear((), Fraction(value)), Fraction(-1))
+        numerator, denominator = (linear_form_of_node(item, definitions) for item in node.arguments)
+        return (
+            None
+            if numerator is None or denominator is None
+            else numerator.plus_multiple_of(denominator, -Fraction(value))
+        )
+    equation = linear_form_of_node(node, definitions)
+    return None if equation is None else equation.plus_multiple_of(Linear((), Fraction(value)), Fraction(-1))
 
 
-def _named_linears(formula: FormulaQuantity) -> dict[str, Linear | None]:
+def _linear_forms_by_name(formula: FormulaQuantity) -> dict[str, Linear | None]:
     """Return the linear formulas that a formula names, by name."""
-    definitions: dict[str, Linear | None] = {name: linear_unknown(name) for name in formula.dimensions}
-    definitions |= {item.name: linear_unknown(item.name) for item in formula.varying}
+    definitions: dict[str, Linear | None] = {name: linear_form_of_unknown(name) for name in formula.dimensions}
+    definitions |= {item.name: linear_form_of_unknown(item.name) for item in formula.varying}
     for part in formula.parts:
         if isinstance(part, FormulaQuantity):
-            definitions[part.name] = linear_of(part.expression, _named_linears(part))
+            definitions[part.name] = linear_form_of_node(part.expression, _linear_forms_by_name(part))
     return definitions
 
 
 def linear_form(formula: FormulaQuantity) -> Linear | None:
     """Return a formula as linear in dimensions, numbers and the quantities that it names; None if it is not linear."""
-    definitions = _named_linears(formula)
+    definitions = _linear_forms_by_name(formula)
     for part in formula.parts:
-        definitions[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else linear_unknown(part.name)
-    return linear_of(formula.expression, definitions)
+        definitions[part.name] = (
+            linear_form(part) if isinstance(part, FormulaQuantity) else linear_form_of_unknown(part.name)
+        )
+    return linear_form_of_node(formula.expression, definitions)
 
 
 def basic_quantities(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:

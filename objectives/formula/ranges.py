@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...model.errors import InputError
-from .expression import SIZE, Call, Linear, Name, Node, Number, formula_text, linear_of
+from .expression import SIZE, Call, Linear, Name, Node, Number, formula_text, linear_form_of_node
 
 _ROUNDING = 1e-14
 
@@ -51,7 +51,7 @@ class FormulaBounds:
     linears: Mapping[str, Linear | None]
     advice: Mapping[str, str]
 
-    def bounds(self, node: Node) -> Interval:
+    def bounds_of_formula(self, node: Node) -> Interval:
         """Return the bounds of a formula.
 
         Raises `InputError` for a divisor that may be zero, and for a function that is undefined throughout the ranges.
@@ -60,20 +60,21 @@ class FormulaBounds:
             return Interval(node.si, node.si)
         if isinstance(node, Name):
             return self.intervals[node.name]
-        given = [self.bounds(item) for item in node.arguments]
+        given = [self.bounds_of_formula(item) for item in node.arguments]
         if node.function == "/" and given[1].spans_zero:
-            self._refuse_divisor(node.arguments[1], given[1])
+            self._raise_zero_divisor_error(node.arguments[1], given[1])
         if node.function == "**" and given[0].spans_zero and given[1].lower < 0.0:
-            self._refuse_divisor(node.arguments[0], given[0])
+            self._raise_zero_divisor_error(node.arguments[0], given[0])
         found = _interval_of_call(node, given)
-        linear = linear_of(node, self.linears)
+        linear = linear_form_of_node(node, self.linears)
         if node.function == "/" and linear is None:
             found = _intersection(
-                found, self._bounds_of_linear_quotient(*(linear_of(item, self.linears) for item in node.arguments))
+                found,
+                self._bounds_of_linear_quotient(*(linear_form_of_node(item, self.linears) for item in node.arguments)),
             )
         return found if linear is None else _intersection(found, self._bounds_of_linear(linear))
 
-    def _refuse_divisor(self, node: Node, found: Interval) -> None:
+    def _raise_zero_divisor_error(self, node: Node, found: Interval) -> None:
         if isinstance(node, Name):
             remedy = self.advice.get(node.name, "divide by something else")
         else:
@@ -92,7 +93,7 @@ class FormulaBounds:
             if name not in _TURNING:
                 ends = [factor * end for end in (self.intervals[name].lower, self.intervals[name].upper)]
                 least, greatest = least + min(ends), greatest + max(ends)
-        values = [(_sum_of(factors, corner), corner.edge) for corner in self._range_corners()]
+        values = [(_sum_at_corner(factors, corner), corner.edge) for corner in self._range_corners()]
         if not values:
             return ANY
         low, high = min(value for value, _ in values), max(value for value, _ in values)
@@ -113,11 +114,11 @@ class FormulaBounds:
             {name: float(factor) for name, factor in linear.factors} for linear in (numerator, denominator)
         )
         corners = self._range_corners()
-        divisors = [_sum_of(bottoms, corner) + float(denominator.constant) for corner in corners]
+        divisors = [_sum_at_corner(bottoms, corner) + float(denominator.constant) for corner in corners]
         if not divisors or not (min(divisors) > 0.0 or max(divisors) < 0.0):
             return ANY
         values = [
-            ((_sum_of(tops, corner) + float(numerator.constant)) / divisor, corner.edge)
+            ((_sum_at_corner(tops, corner) + float(numerator.constant)) / divisor, corner.edge)
             for corner, divisor in zip(corners, divisors, strict=True)
         ]
         low, high = min(value for value, _ in values), max(value for value, _ in values)
@@ -163,7 +164,7 @@ class _Corner(NamedTuple):
 _TURNING = {"crank", "rod", "offset", SIZE}
 
 
-def _sum_of(factors: Mapping[str, float], corner: _Corner) -> float:
+def _sum_at_corner(factors: Mapping[str, float], corner: _Corner) -> float:
     """Return the sum of factors times dimensions at a corner."""
     offset_factor = corner.sign * factors.get("offset", 0.0) + factors.get(SIZE, 0.0)
     return factors.get("crank", 0.0) * corner.crank + factors.get("rod", 0.0) * corner.rod + offset_factor * corner.size

@@ -27,15 +27,15 @@ def resolve_quantities(
     formulas: Formulas | None = None
     quantities = []
     for name in names:
-        if is_formula(name, mechanism, custom):
+        if is_formula_or_number_name(name, mechanism, custom):
             formulas = formulas or Formulas(custom, mechanism, ranges, {}, turning=turning)
-            quantities.append(formulas.quantity(name, f"the formula {' '.join(name[:60].split())}"))
+            quantities.append(formulas.quantity_of_text(name, f"the formula {' '.join(name[:60].split())}"))
         else:
             quantities.append(quantity(name, custom))
     return quantities
 
 
-def is_formula(name: object, mechanism: Mechanism, custom: Collection[Quantity] = ()) -> bool:
+def is_formula_or_number_name(name: object, mechanism: Mechanism, custom: Collection[Quantity] = ()) -> bool:
     """Return whether a text is a formula, a dimension or a variable rather than the name of a quantity."""
     if not isinstance(name, str) or name in QUANTITIES or any(quantity.name == name for quantity in custom):
         return False

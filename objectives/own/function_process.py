@@ -34,7 +34,7 @@ _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udff
 """Unicode control characters, including those for lines and writing direction, and lone surrogates."""
 
 
-def printable(text: str, *, allowed: str = "") -> str:
+def escape_control_characters(text: str, *, allowed: str = "") -> str:
     r"""Return a text with every control character except allowed ones escaped as in Python: "\x1b"."""
     return _CONTROL.sub(lambda found: found[0] if found[0] in allowed else ascii(found[0])[1:-1], text)
 
@@ -50,7 +50,7 @@ class Refused(Exception):
 
     def __init__(self, reason: str) -> None:
         """Take the reason."""
-        super().__init__(printable(reason))
+        super().__init__(escape_control_characters(reason))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from .function_process import printable
+from .function_process import escape_control_characters
 
 PRINTED = 1_000_000
 """Bytes that a function and its descendants may print."""
@@ -69,7 +69,7 @@ def _fork_function_process(asking: int, log: str) -> None:
         family.reap_ended_children()
     if family.code is None:
         Path(log).unlink(missing_ok=True)
-    family.end()
+    family.kill_all()
     relay.join(_FLUSH)
     os._exit(family.code or 0)
 
@@ -95,7 +95,7 @@ class _Family:
             return True
         return False
 
-    def end(self) -> None:
+    def kill_all(self) -> None:
         """Kill all processes until none is left; some may fork in the meantime, and orphans become children."""
         with contextlib.suppress(OSError):
             os.killpg(self.function, signal.SIGKILL)  # a whole group at once, including forks in progress
@@ -120,8 +120,8 @@ def _descendants(process: int) -> Iterator[int]:
             yield parent
 
 
-def _end_with_caller(asking: int) -> None:
-    while os.getppid() == asking:
+def _end_with_caller(caller_process: int) -> None:
+    while os.getppid() == caller_process:
         time.sleep(_LOOK)
     os.kill(os.getpid(), signal.SIGTERM)
 
@@ -146,7 +146,9 @@ def _relay_output(printed: int) -> None:
 
 
 def _write_printable(text: bytes) -> None:
-    printable_text = printable(text.decode(errors="backslashreplace").replace("\r\n", "\n"), allowed="\n\t")
+    printable_text = escape_control_characters(
+        text.decode(errors="backslashreplace").replace("\r\n", "\n"), allowed="\n\t"
+    )
     with contextlib.suppress(OSError):  # standard error is closed
         os.write(2, printable_text.encode())
 

@@ -61,9 +61,9 @@ class OwnQuantity(Quantity):
 
     function: takes `Designs` and returns (n,), or (n, k) whose maximum counts, SI. "module:function" runs in its own
     process, within the limit; a Python function runs in this process, without a limit. kind: a kind in the table, or
-    `kinds.kind_in` for any unit. gradient: "complex step" for a function that accepts complex numbers, else "finite
-    differences"; "none" for methods that need no gradient. folders: folders that may contain the module. limit: time
-    limit of a call for up to 256 designs, s. longest: upper bound on `limit` set by whoever runs the function, s.
+    `kinds.kind_displayed_in` for any unit. gradient: "complex step" for a function that accepts complex numbers, else
+    "finite differences"; "none" for methods that need no gradient. folders: folders that may contain the module. limit:
+    time limit of a call for up to 256 designs, s. longest: upper bound on `limit` set by whoever runs the function, s.
 
     Every method raises `InputError` with the quantity's name if the function raises, exceeds the time limit, or ends
     the process. It also does so if the result is not finite or has the wrong shape, or if there is no such gradient.
@@ -116,8 +116,8 @@ class OwnQuantity(Quantity):
         dimensions = self._rows_without_locking(dimensions)
         self._check_complex_step(mechanism, dimensions)
         values = np.full(len(dimensions), np.inf)
-        for rows in self._batches(mechanism, dimensions):
-            values[rows] = self._ask(mechanism, dimensions[rows], None).values.max(axis=1)
+        for rows in self._batches_of_unlocked_rows(mechanism, dimensions):
+            values[rows] = self._call_function(mechanism, dimensions[rows], None).values.max(axis=1)
         return Values(values, None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
@@ -128,7 +128,7 @@ class OwnQuantity(Quantity):
         dimensions = self._rows_without_locking(dimensions)
         self._check_complex_step(mechanism, dimensions)
         parts = []
-        for rows in self._batches(mechanism, dimensions):
+        for rows in self._batches_of_unlocked_rows(mechanism, dimensions):
             piece = self._pieces_by_complex_step if self.gradient == "complex step" else self._single_piece
             parts.append((rows, piece(mechanism, dimensions[rows])))
         n, k = len(dimensions), max((part.values.shape[1] for _, part in parts), default=1)
@@ -149,15 +149,15 @@ class OwnQuantity(Quantity):
 
     # ---- calls to the function ------------------------------------------------------------------------------------
 
-    def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
+    def _call_function(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         session = self._session
-        session.call = session.call or self._call()
+        session.call = session.call or self._make_call()
         try:
             return session.call(mechanism, dimensions, column)
         except Refused as error:
-            self._refuse(str(error))
+            self._raise_refusal(str(error))
 
-    def _call(self) -> Call:
+    def _make_call(self) -> Call:
         if isinstance(self.function, str):
             return Worker(self.function, list(self.folders), self.limit, self.longest)
         function = self.function
@@ -173,7 +173,7 @@ class OwnQuantity(Quantity):
         for part in module.split("."):
             spec = None if places is None else PathFinder.find_spec(part, places)
             if spec is None:
-                self._refuse(
+                self._raise_refusal(
                     f"must be in a module in the folder of the job file or installed; no module {module} was "
                     f"found; put {module.split('.')[0]}.py there, or correct module:function"
                 )
@@ -182,9 +182,9 @@ class OwnQuantity(Quantity):
         if source is not None and source.suffix == ".py":
             text = source.read_text(encoding="utf-8", errors="replace")
             if not re.search(rf"\b({re.escape(function)}\b|import\s+\*)", text):
-                self._refuse(f"must be in its module; {source} has no {function}; correct module:function")
+                self._raise_refusal(f"must be in its module; {source} has no {function}; correct module:function")
 
-    def _refuse(self, reason: str) -> NoReturn:
+    def _raise_refusal(self, reason: str) -> NoReturn:
         function_name = (
             self.function if isinstance(self.function, str) else getattr(self.function, "__qualname__", "function")
         )
@@ -192,12 +192,12 @@ class OwnQuantity(Quantity):
 
     def _rows_without_locking(self, dimensions: Array) -> Array:
         if dimensions.shape[1] != 3:
-            self._refuse(
+            self._raise_refusal(
                 "may only depend on crank, rod and offset; got more variables; fix them, or use other quantities"
             )
         return require_full_rotation(dimensions)
 
-    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[IntArray]:
+    def _batches_of_unlocked_rows(self, mechanism: Mechanism, dimensions: Array) -> Iterator[IntArray]:
         """Yield the rows of designs that friction does not lock; forces in the others are undetermined."""
         rows = np.arange(len(dimensions))
         if mechanism.friction.acts:
@@ -208,7 +208,7 @@ class OwnQuantity(Quantity):
     # ---- gradients ------------------------------------------------------------------------------------------------
 
     def _pieces_by_complex_step(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        answers = [self._ask(mechanism, dimensions, column) for column in range(3)]
+        answers = [self._call_function(mechanism, dimensions, column) for column in range(3)]
         values = answers[0].values
         gradients = np.stack([np.asarray(answer.slopes) for answer in answers], axis=2)
         angles = answers[0].angles
@@ -219,10 +219,10 @@ class OwnQuantity(Quantity):
         again = same & (np.arange(values.shape[1]) != top)
         values = np.where(again, -np.inf, values)
         gradients = np.where(again[:, :, None], 0.0, gradients)
-        return Pieces(values, gradients, labels).take(np.argsort(-values, axis=1, kind="stable"))
+        return Pieces(values, gradients, labels).select_pieces(np.argsort(-values, axis=1, kind="stable"))
 
     def _single_piece(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        values = self._ask(mechanism, dimensions, None).values.max(axis=1)[:, None]
+        values = self._call_function(mechanism, dimensions, None).values.max(axis=1)[:, None]
         slopes = np.zeros((len(dimensions), 3))
         if self.gradient == "finite differences":
             slopes = self._central_differences(mechanism, dimensions, _STEP)
@@ -241,7 +241,7 @@ class OwnQuantity(Quantity):
             for sign in (1.0, -1.0):
                 moved = dimensions.copy()
                 moved[:, column] += sign * step
-                ends.append((moved[:, column], self._ask(mechanism, moved, None).values.max(axis=1)))
+                ends.append((moved[:, column], self._call_function(mechanism, moved, None).values.max(axis=1)))
             (upper, high), (lower, low) = ends
             slopes[:, column] = (high - low) / (upper - lower)
         return slopes
@@ -253,7 +253,7 @@ class OwnQuantity(Quantity):
         """
         if self.gradient != "complex step" or mechanism in self._session.validated:
             return
-        rows = np.concatenate([np.zeros(0, np.int64), *self._batches(mechanism, dimensions)])
+        rows = np.concatenate([np.zeros(0, np.int64), *self._batches_of_unlocked_rows(mechanism, dimensions)])
         if not len(rows):
             return
         witnesses = dimensions[np.unique(rows[np.linspace(0, len(rows) - 1, _WITNESSES).astype(int)])]
@@ -267,7 +267,7 @@ class OwnQuantity(Quantity):
             row = int(np.flatnonzero(wrong)[0])
             column = int(np.argmax(differences[row]))
             crank, rod, offset = 1e3 * witnesses[row]
-            self._refuse(
+            self._raise_refusal(
                 "must have a gradient by complex step that agrees with differences; got "
                 f"{pieces.gradients[row, 0, column]:.6g} and {fine[row, column]:.6g} by the "
                 f"{('crank', 'rod', 'offset')[column]} for crank {crank:.6g} mm, rod {rod:.6g} mm, offset "

@@ -58,7 +58,7 @@ class Sample:
         return deviations
 
     @cached_property
-    def weights(self) -> Array:
+    def order_statistic_weights(self) -> Array:
         """Weight of each ascending order statistic in the quantile, (samples,)."""
         from scipy.special import betainc
 
@@ -85,12 +85,12 @@ class Sample:
 
     def quantile_of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
-        order, rank = self._ranked(machines)
+        order, rank = self._ranked_machines_and_weights(machines)
         quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
         slope = _einsum_by_design("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
         return quantile, np.where(np.isfinite(quantile)[:, None], slope, 0.0)
 
-    def quantile_of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
+    def quantile_from_star_points(self, values: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
         absent = ~np.isfinite(values[:, 0])[:, :, None]
         drawn = _einsum_by_design(
@@ -99,7 +99,7 @@ class Sample:
         drawn = np.where(absent, -np.inf, drawn)
         piece = np.argmax(drawn, axis=1)
         machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
-        order, rank = self._ranked(machines)
+        order, rank = self._ranked_machines_and_weights(machines)
         quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
         ordered_pieces = np.take_along_axis(piece, order, axis=1)
         slope = np.zeros((len(values), slopes.shape[3]))
@@ -113,19 +113,21 @@ class Sample:
         top = np.argmax(values[:, 0], axis=1)
         control = _einsum_by_design("nq,dq->nd", values[rows, :, top], self.slope_matrix)
         deviations = self.deviations[:, list(self.columns)]
-        order, rank = self._ranked(_einsum_by_design("nd,ds->ns", control, deviations.T))
+        order, rank = self._ranked_machines_and_weights(_einsum_by_design("nd,ds->ns", control, deviations.T))
         shift = _einsum_by_design("s,nsd->nd", rank, deviations[order])
         exact, exact_slope = linear_quantile(control, self.share)
         by_control = _einsum_by_design("nd,dq->nq", exact_slope - shift, self.slope_matrix)
         quantile = quantile + exact - _einsum_by_design("nd,nd->n", shift, control)
         return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 
-    def _ranked(self, machines: Array) -> tuple[IntArray, Array]:
+    def _ranked_machines_and_weights(self, machines: Array) -> tuple[IntArray, Array]:
         """Return the machines (n, s), in ascending order, that determine the quantile, and their weights (s,)."""
-        first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no sorting
+        first, last = np.flatnonzero(self.order_statistic_weights > _FAINT)[
+            [0, -1]
+        ]  # few of many: the others need no sorting
         tail = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)
         order = np.argsort(np.take_along_axis(machines, tail, axis=1), axis=1, kind="stable")
-        return np.take_along_axis(tail, order, axis=1), self.weights[first : last + 1]
+        return np.take_along_axis(tail, order, axis=1), self.order_statistic_weights[first : last + 1]
 
 
 sample = lru_cache(maxsize=32)(Sample)

@@ -80,8 +80,8 @@ class RobustQuantity(Quantity):
         require_robust_options_in_range(self.case, self.order, self.share, self.samples, self.shape)
         whose = "all within tolerances" if self.case == "worst case" else f"{100.0 * self.share:.6g} % of machines"
         facts = {
-            "name": f"{self.inner.name if self.inner.name.isidentifier() else self.inner.stem}_{self.suffix}",
-            "key": f"{self.inner.stem}_{self.suffix}",
+            "name": f"{self.inner.name if self.inner.name.isidentifier() else self.inner.column_stem}_{self.suffix}",
+            "key": f"{self.inner.column_stem}_{self.suffix}",
             "title": f"{self.inner.short_title}, {whose}",
             "short": "",
             "signed": True,  # errors may take a quantity beyond the range of nominal linkages
@@ -132,7 +132,9 @@ class RobustQuantity(Quantity):
             pieces = self.inner.pieces(mechanism, dimensions)
             if self.side == "high":
                 return pieces
-            return replace(pieces, least=True).take(np.argmax(pieces.values, axis=1)[:, None])  # its only active piece
+            return replace(pieces, least=True).select_pieces(
+                np.argmax(pieces.values, axis=1)[:, None]
+            )  # its only active piece
         if self.case == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
         low = self.side == "low"
@@ -144,11 +146,11 @@ class RobustQuantity(Quantity):
         ]
         merged = _merge_parts(len(dimensions), parts, absent=np.inf if low else -np.inf)
         pieces = Pieces(*merged, least=low)
-        return pieces.take(
+        return pieces.select_pieces(
             np.argsort(pieces.values if low else -pieces.values, axis=1, kind="stable")[:, :_MOST_PIECES]
         )
 
-    def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
+    def first_order_estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
         """Return the first-order estimate (n,) from values and gradients of the nominal quantity.
 
         A percentile is estimated from a normal distribution with the same variance. Used to rank many designs.
@@ -205,7 +207,7 @@ class RobustQuantity(Quantity):
                 point_values.gradients.reshape(n, -1, width),
                 labels.reshape(n, -1),
             )
-        values, slopes = point_values.highest(point_values.gradients)
+        values, slopes = point_values.highest_pieces(point_values.gradients)
         point = np.broadcast_to(_LABEL_STEP * np.arange(values.shape[1]), values.shape)
         # Infinite where friction locks the linkage: nothing is high there.
         return np.where(point_values.turns & (values < np.inf), values, -np.inf), slopes, point
@@ -254,7 +256,7 @@ class RobustQuantity(Quantity):
         has_all_twins: Mask = np.logical_and.reduce(has_twin, axis=1)
         values = np.where(has_all_twins[:, None, :], values, -np.inf)
         # If a peak is absent at some points but matters at others, the maximum over all peaks is taken as one piece.
-        top, steepest = star_values.highest(star_values.gradients)
+        top, steepest = star_values.highest_pieces(star_values.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
         lost = np.flatnonzero((greatest < top).any(axis=1))
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
@@ -270,10 +272,10 @@ class RobustQuantity(Quantity):
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
         quantiles[(top == -np.inf).all(axis=1)] = -np.inf  # a margin that is infinite for all machines
         for rows in _row_blocks(good, len(drawn.deviations) * values.shape[2]):
-            quantiles[rows], gradients[rows] = drawn.quantile_of_star(values[rows], slopes[rows])
+            quantiles[rows], gradients[rows] = drawn.quantile_from_star_points(values[rows], slopes[rows])
         for rows in _row_blocks(kinked, 32 * len(drawn.deviations)):
             star_values = evaluate_points(self.inner, mechanism, dimensions[rows], drawn.deviations)
-            machines, steep = star_values.highest(star_values.gradients)
+            machines, steep = star_values.highest_pieces(star_values.gradients)
             if self.side == "low":
                 machines = np.where(star_values.turns & (machines < np.inf), machines, -np.inf)
             quantiles[rows], gradients[rows] = drawn.quantile_of_machines(machines, steep)

@@ -33,7 +33,7 @@ class PointValues:
     labels: Array
     turns: Mask
 
-    def highest(self, slopes: Array) -> tuple[Array, Array]:
+    def highest_pieces(self, slopes: Array) -> tuple[Array, Array]:
         """Return the value (n, q) of the highest piece at each point, with its gradients."""
         first = np.argmax(self.values, axis=2)[:, :, None]
         values = np.take_along_axis(self.values, first, axis=2)[:, :, 0]
@@ -224,7 +224,7 @@ def worst_inner_points(
 
 def _signed_as_losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
     """Return a quantity as a loss at points (n, q), slopes (n, q, 3), and where the linkage rotates fully."""
-    values, slopes = point_values.highest(point_values.local)
+    values, slopes = point_values.highest_pieces(point_values.local)
     sign = -1.0 if low else 1.0
     return np.where(point_values.turns, sign * values, np.inf), sign * slopes, point_values.turns
 

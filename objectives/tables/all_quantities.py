@@ -175,5 +175,5 @@ def analysis_columns(
             columns[quantity.field] = np.full(len(dimensions), np.nan)
     for quantity in custom:
         if isinstance(quantity, MotionDeviation):
-            columns |= quantity.settings(mechanism, dimensions)
+            columns |= quantity.best_fit_phase_and_shift(mechanism, dimensions)
     return columns

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinder_machines import TURN, cycle_turns
+from ...model.machine.cylinders_as_machines import TURN, cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ..kinds import Kind
 from ..quantity import Array
@@ -63,7 +63,7 @@ class Deviation:
     fit: Fit | None
 
 
-def deviations(
+def curve_deviations(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, measured: Mapping[str, Array]
 ) -> list[Deviation]:
     """Return the deviations of measured curves from the computed curves of one fully rotating linkage.

@@ -21,9 +21,9 @@ from ...model.dynamics.segments import crank_angle_from_crowded, crowded_from_cr
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.clearance import Friction
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
+from ...model.signals.panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from ..kinds import Kind
 from ..machine_needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..motion_deviation import POSITION_ERROR, POSITION_ERROR_RSS
@@ -96,9 +96,9 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
 
     pieces = _smooth_pieces(mechanism, linkage)
     samples = [values(piece) for piece in pieces]
-    sizes = _curve_sizes(first, samples)
+    sizes = _curve_magnitudes(first, samples)
     period = cycle_turns(mechanism) * _TURN
-    least, greatest = _extremes_at_ends(values, pieces, samples, sizes, period)
+    least, greatest = _minima_and_maxima(values, pieces, samples, sizes, period)
     extremes = []
     for row, curve in enumerate(first):
         ends = []
@@ -178,7 +178,7 @@ def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     return pieces
 
 
-def _curve_sizes(curves: list[Curve], samples: list[Array]) -> Array:
+def _curve_magnitudes(curves: list[Curve], samples: list[Array]) -> Array:
     """Return the maximum magnitude (m, 2) of each curve, and of all curves with its unit; NaN if undetermined."""
     magnitudes = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
     units = [curve.kind.unit for curve in curves]
@@ -189,7 +189,7 @@ def _curve_sizes(curves: list[Curve], samples: list[Array]) -> Array:
     return np.stack([magnitudes, shared], axis=1)
 
 
-def _extremes_at_ends(
+def _minima_and_maxima(
     values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, period: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
     """Return the minimum of each curve with its crank angle, and likewise its maximum.
@@ -213,7 +213,7 @@ def _extremes_at_ends(
             away = np.all(np.abs(np.subtract.outer(angles[candidates], places)) > 4.0 * _INSET, axis=1)
             places = np.concatenate([[angle], places, angles[candidates][away]])
             first = index_of_first_maximum(np.concatenate([[value], heights, tops[candidates][away]]), places, period)
-            refined[row] = (sign * value + 0.0, angle_in_cycle(float(places[first]), period))
+            refined[row] = (sign * value + 0.0, wrap_into_cycle(float(places[first]), period))
         ends.append(refined)
     return ends[0], ends[1]
 
@@ -236,13 +236,13 @@ def _coarse_extremes(
         elif top - bottom <= _CONSTANT * shared:
             ends.append((0.0 if magnitude <= _CONSTANT * shared else sign * top, math.nan))
         else:
-            ends.append(_best_end(curve, pieces))
+            ends.append(_highest_piece_end(curve, pieces))
             brackets += [(row, *bracket) for bracket in _maximum_brackets(curve, pieces)]
     rows, left, right = np.array(brackets, dtype=float).reshape(-1, 3).T
     return ends, rows, left, right
 
 
-def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
+def _highest_piece_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
     """Return the maximum one-sided limit at the piece ends, linearly extrapolated, and its crank angle."""
     ends = []
     for angles, values in zip(pieces, curve, strict=True):

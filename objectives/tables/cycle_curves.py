@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_slider_derivative
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import direction_angle, real_or_complex_array
-from ...model.machine.cylinder_machines import cycle_turns, cylinder_count
+from ...model.machine.cylinders_as_machines import cycle_turns, cylinder_count
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.motor_curves import MotorCurve, motor_curve
 from ..kinds import (
@@ -152,7 +152,10 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     import pandas as pd
 
     return pd.DataFrame(
-        {curve.name + curve.kind.si.suffix: curve.values for curve in cycle_curves(mechanism, linkage, theta)}
+        {
+            curve.name + curve.kind.si_display_unit.suffix: curve.values
+            for curve in cycle_curves(mechanism, linkage, theta)
+        }
     )
 
 

@@ -29,13 +29,13 @@ def column_of_variable(varying: Varying) -> tuple[str, DisplayUnit]:
     return name + unit.suffix, unit
 
 
-def number_in_words(name: str) -> str:
+def words_of_number_name(name: str) -> str:
     """Return the words for a number in a job from its name or key: "slider mass", "crank pin diameter"."""
     words = re.sub("[._]", " ", name.removeprefix("mechanism."))
     return re.sub("^sections pins (.+)", r"\1 diameter", words)
 
 
-def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
+def columns_of_design_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
     """Return key and unit for each number of a design by name: crank, rod, offset, and extra variables."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
     return lengths | {item.name: column_of_variable(item) for item in varying}
@@ -79,7 +79,7 @@ def designs_as_array(designs: object, names: Sequence[str]) -> Array:
         array = np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"designs must be arrays of real numbers, SI; got {short_text(designs)}; "
+            f"designs must be arrays of real numbers, SI; got {printed_or_type_text(designs)}; "
             f"give {needed} of each, in m, not as "
             "text "
             "and not complex"
@@ -121,7 +121,7 @@ def has_finite_numbers(designs: Array) -> Mask:
     return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 
-def short_text(value: object) -> str:
+def printed_or_type_text(value: object) -> str:
     """Return a value as it prints, or only its type if that is long."""
     text = repr(value)
     return text if len(text) <= 60 and "\n" not in text else type(value).__name__

@@ -26,13 +26,13 @@ from .design_input import (
     require_machine,
     warn_of_lengths,
 )
-from .swing_columns import require_quantities_of_motion, require_same_driver, require_swing_quantity
+from .swing_columns import require_motion_of_machine_kind, require_quantities_of_motion, require_swing_quantity
 
 _ROUNDING = 1e-8
 """Relative tolerance: a design within this fraction of an allowable value meets it."""
 
 
-def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None]) -> dict[str, Array]:
+def violations_of_allowables(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None]) -> dict[str, Array]:
     """Return the violation (n,) of each allowable value by designs, SI, by the name of the quantity.
 
     values_of: returns the values (n,) of a quantity by name, SI; NaN for a design without a value, None if no design
@@ -107,10 +107,10 @@ def evaluate(
     require_machine(mechanism)
     array = designs_as_array(designs, names_of_design_numbers(mechanism))
     warn_of_lengths(mechanism, array)
-    return evaluated_as_array(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
+    return quantities_as_array(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
 
 
-def evaluated_as_array(
+def quantities_as_array(
     mechanism: Mechanism,
     designs: Array,
     quantities: Sequence[str],
@@ -123,7 +123,7 @@ def evaluated_as_array(
     if isinstance(quantities, str):
         raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
-    require_same_driver(mechanism, swing)
+    require_motion_of_machine_kind(mechanism, swing)
     require_quantities_of_motion(quantities, own, swing)
     chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
@@ -138,7 +138,7 @@ def evaluated_as_array(
         raise InputError(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
         )
-    turns = can_move(mechanism, swing, rows)
+    turns = designs_that_can_move(mechanism, swing, rows)
     turns &= has_finite_numbers(rows)
     all_turn = bool(turns.all())
     evaluations = _evaluate_leaves(mechanism, chosen, rows if all_turn else rows[turns], gradients)
@@ -153,7 +153,7 @@ def evaluated_as_array(
     return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
 
 
-def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+def designs_that_can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
         return (can_make_motion if swing.of_lever else swings_without_dead_point)(mechanism, swing, designs)
@@ -165,7 +165,7 @@ def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
 def can_run_despite_friction(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
     if swing is None or swing.of_lever:
-        return can_move(mechanism, swing, designs)
+        return designs_that_can_move(mechanism, swing, designs)
     return can_swing_despite_friction(mechanism, swing, designs)
 
 

@@ -72,7 +72,9 @@ def meaningful_columns(
         mechanism if mechanism.speed else replace(mechanism, speed=1.0)
     )  # velocities have the units usual for their kind
     curves = {curve.name: curve for curve in every_curve(moving, linkage, np.zeros(1))}
-    spoken = {_plain_text(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
+    spoken = {_normalised_column_name(curve.title): name for name, curve in curves.items()} | {
+        name: name for name in curves
+    }
     spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
     kinds = {name: curve.kind for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
     columns: dict[str, Column] = {}
@@ -183,7 +185,7 @@ def _column_meaning(
 ) -> Column | None:
     """Return the meaning of a column; None if it has no meaning."""
     bracketed = _BRACKETED.fullmatch(text)
-    stem = _plain_text(text if bracketed is None else bracketed[1])
+    stem = _normalised_column_name(text if bracketed is None else bracketed[1])
     if bracketed is not None:
         curve_name, unit = (stem if stem in spoken else None), bracketed[2].strip()
     else:
@@ -234,19 +236,19 @@ def _display_units(kind: Kind) -> list[DisplayUnit]:
     return [unit for unit in (kind.metric, DisplayUnit(kind.unit, ""), kind.inch) if unit is not None and unit.symbol]
 
 
-def _plain_text(text: str) -> str:
+def _normalised_column_name(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", text.strip().casefold()).strip("_")
 
 
 def _likely_curve(name: str, spoken: Iterable[str]) -> str | None:
     """Return the curve that a column may mean, by its first word or a similar name."""
-    word = _plain_text(name).partition("_")[0]
+    word = _normalised_column_name(name).partition("_")[0]
     return next((curve for curve in spoken if word in curve.split("_")), None) or _likely_word(name, spoken)
 
 
 def _likely_word(name: str, words: Iterable[str]) -> str | None:
     """Return the word that a misspelt name probably means; None if none is close."""
-    return next(iter(difflib.get_close_matches(_plain_text(name)[:60], list(words), n=1)), None)
+    return next(iter(difflib.get_close_matches(_normalised_column_name(name)[:60], list(words), n=1)), None)
 
 
 def _names_text(names: list[str]) -> str:

@@ -18,14 +18,14 @@ from ...model.kinematics import geometry
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing, with_start_of_machine
+from ...model.swing.swing import Swing, with_start_set_by_machine
 from ...model.tolerance.error_distributions import limits_of_sources
 from ..formula.resolve_names import resolve_quantities
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from .all_quantities import missing_value_reasons
-from .swing_columns import quantities_for_swing, require_motion, swing_quantities
+from .swing_columns import linkage_that_can_move, quantities_for_swing, swing_quantities
 
 _TIE = 1e-9  # relative to a quantity: pieces that differ by less count as equal
 _ROUNDING = 1e-12  # in units of a quantity over the rod: smaller changes are rounding errors
@@ -84,10 +84,10 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
     design[2] = float(linkage.offset)
     if swing is not None:
-        require_motion(mechanism, linkage, swing)
+        linkage_that_can_move(mechanism, linkage, swing)
     tolerances = limits_of_sources(mechanism, linkage)[:3]
     rows = []
-    ends = None if swing is None else with_start_of_machine(mechanism, swing)
+    ends = None if swing is None else with_start_set_by_machine(mechanism, swing)
     for quantity in QUANTITIES.values() if ends is None else quantities_for_swing(swing_quantities(ends)):
         value, slopes_below, slopes_above = _value_and_one_sided_derivatives(quantity, mechanism, design)
         if quantity.undefined_because([mechanism]):

@@ -36,7 +36,9 @@ def swing_quantity_facts() -> tuple[SwingQuantity, ...]:
 
 def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
     """Return the quantities that are defined for a swing."""
-    return tuple(replace(fact, swing=swing) for fact in swing_quantity_facts() if fact.unfit(swing) is None)
+    return tuple(
+        replace(fact, swing=swing) for fact in swing_quantity_facts() if fact.unfit_swing_reason(swing) is None
+    )
 
 
 def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
@@ -59,7 +61,7 @@ def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
             'needs a swinging crank; this crank rotates fully; add [motion] kind = "swing" with from and to, '
             "or leave the quantity out"
         )
-    return fact.unfit(swing)
+    return fact.unfit_swing_reason(swing)
 
 
 def require_quantities_of_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
@@ -71,7 +73,7 @@ def require_quantities_of_motion(names: Iterable[str], custom: Iterable[Quantity
             raise InputError(f"{name}: {reason}")
 
 
-def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
+def require_motion_of_machine_kind(mechanism: Mechanism, swing: Swing | None) -> None:
     """Raise `InputError` unless a lever has a motion of levers, and no other machine has one."""
     of_lever = swing is not None and swing.of_lever
     if (mechanism.lever is not None) != of_lever:
@@ -128,12 +130,12 @@ def _require_nothing_of_a_driving_cylinder(mechanism: Mechanism) -> None:
             )
 
 
-def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:
+def linkage_that_can_move(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:
     """Return one linkage with dimensions as floats, which rotates fully, or makes a swing.
 
     Raises `AssemblyError` or `InputError` if it does not.
     """
-    require_same_driver(mechanism, swing)
+    require_motion_of_machine_kind(mechanism, swing)
     if swing is None:
         return require_single_rotating_linkage(mechanism, linkage)
     return (require_swing if mechanism.lever is None else movable_lever_linkage)(mechanism, linkage, swing)
@@ -174,7 +176,9 @@ def require_swing_quantity(key: str, quantity: Quantity, swing: Swing) -> None:
     for leaf in basic_quantities([quantity]):
         if leaf.turning:
             facts = (fact for fact in swing_quantity_facts() if isinstance(fact, LeverQuantity) == swing.of_lever)
-            names = ", ".join(fact.name for fact in facts if not swing.of_full_turn or fact.unfit(swing) is None)
+            names = ", ".join(
+                fact.name for fact in facts if not swing.of_full_turn or fact.unfit_swing_reason(swing) is None
+            )
             needed = 'a crank that rotates fully; got [motion] kind = "swing"; use a quantity of a swing'
             if swing.of_full_turn:
                 needed = "a crank with rod and slider; got a lever; use a quantity of a lever's full turn"

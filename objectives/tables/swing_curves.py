@@ -70,11 +70,13 @@ def motion_and_drive_curves(swing: Swing) -> tuple[SwingCurve, ...]:
         SwingCurve("slider_position", "slider_position", "slider position", LENGTH),
         SwingCurve("slider_velocity", "slider_velocity", "slider velocity", SPEED, timed=True),
         SwingCurve("slider_acceleration", "slider_acceleration", "slider acceleration", ACCELERATION, timed=True),
-        SwingCurve("drive", "drive", drive, drive_kind(swing)),
+        SwingCurve("drive", "drive", drive, kind_of_drive_effort(swing)),
         SwingCurve("power", "power", "power of the drive", POWER, timed=True),
         SwingCurve("load", "load", "load on the slider", FORCE),
         SwingCurve("transmission_angle", "driven_angle", angle_title, ANGLE),
-        SwingCurve(f"{driven_side_name(swing)}_position_error", "driven_error", error, driven_error_kind(swing)),
+        SwingCurve(
+            f"{driven_side_name(swing)}_position_error", "driven_error", error, kind_of_driven_side_error(swing)
+        ),
     )
     return tuple(curve for curve in every if not curve.timed or swing.duration is not None)
 
@@ -100,12 +102,12 @@ def force_magnitudes() -> tuple[SwingCurve, ...]:
     )
 
 
-def drive_kind(swing: Swing) -> Kind:
+def kind_of_drive_effort(swing: Swing) -> Kind:
     """Return the kind of the drive effort: a torque or a force."""
     return TORQUE if swing.driver == "crank" else FORCE
 
 
-def driven_error_kind(swing: Swing) -> Kind:
+def kind_of_driven_side_error(swing: Swing) -> Kind:
     """Return the kind of the error at the driven side: in slider position or in crank angle."""
     return LENGTH if swing.driver == "crank" else ANGLE
 
@@ -167,7 +169,7 @@ def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: in
         columns["time_s"] = swing.duration * shares
     for curve in defined_curves(mechanism, swing):
         values = np.concatenate([getattr(way, curve.attribute) for way in ways])
-        columns[curve.name + curve.kind.si.suffix] = values
+        columns[curve.name + curve.kind.si_display_unit.suffix] = values
     import pandas as pd
 
     return pd.DataFrame(columns)

@@ -80,7 +80,7 @@ class StandardForm:
         points = designs_as_array(x, self.names)
         if self._branch is None:
             return points
-        designs: Array = self._branch.dimensions(points.reshape(-1, len(self.names)))
+        designs: Array = self._branch.designs_at_points(points.reshape(-1, len(self.names)))
         return designs.reshape(*points.shape[:-1], designs.shape[1])
 
     def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
@@ -99,7 +99,7 @@ class StandardForm:
             else (self.problem.evaluate(x, names), np.zeros((*x.shape[:-1], len(names), 0)))
         )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
-        f = [_as_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
+        f = [_minimised_value_and_slope(objective, *at[objective.quantity]) for objective in self.problem.objectives]
         g, h = (
             _full_rotation_rows(x, self._constraints, slopes.shape[-1]) if self._must_rotate_fully else [],
             list[Row](),
@@ -107,7 +107,9 @@ class StandardForm:
         for constraint in self._constraints:
             value, slope = at[constraint.quantity]
             for word, bound in reversed(constraint.sides):
-                (h if word == "equals" else g).append(_scaled_row(value, slope, bound, -1.0 if word == "min" else 1.0))
+                (h if word == "equals" else g).append(
+                    _scaled_excess_row(value, slope, bound, -1.0 if word == "min" else 1.0)
+                )
         if self._branch is not None:
             g += _computed_range_rows(x, self._branch, slopes.shape[-1])
             f, g, h = (_rule_out_spurious_roots(rows, x, self.problem, self._branch) for rows in (f, g, h))
@@ -235,7 +237,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
         names, lower, upper = branch.free, np.zeros(len(branch.free)), np.ones(len(branch.free))
         constraints = tuple(c for c in constraints if c.quantity not in branch.eliminated)
     bounded = [c.quantity for c in constraints if not c.equality for _ in c.sides]
-    computed = [] if branch is None else [name for name in _computed_dimensions(branch) for _ in range(2)]
+    computed = [] if branch is None else [name for name in _eliminated_dimension_names(branch) for _ in range(2)]
     return StandardForm(
         problem,
         names,
@@ -287,20 +289,20 @@ def _branch_label(branch: EliminationBranch) -> str:
     return ", ".join([side, *roots])
 
 
-def _computed_dimensions(branch: EliminationBranch) -> list[str]:
+def _eliminated_dimension_names(branch: EliminationBranch) -> list[str]:
     return [name for name in branch.names[:3] if any(step.target == name for step in branch.steps)]
 
 
 def _computed_range_rows(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
     """Columns of G for the bounds on computed dimensions; an offset counts by its magnitude."""
     rows = []
-    for name in _computed_dimensions(branch):
+    for name in _eliminated_dimension_names(branch):
         column, ends = branch.names.index(name), branch.bounds[name]
         sign = branch.sign if name == "offset" else 1.0
         slope = np.zeros((*x.shape[:-1], width))
         slope[..., column : column + 1] = sign if width else 0.0
         value = sign * x[..., column]
-        rows += [_scaled_row(value, slope, ends.upper, 1.0), _scaled_row(value, slope, ends.lower, -1.0)]
+        rows += [_scaled_excess_row(value, slope, ends.upper, 1.0), _scaled_excess_row(value, slope, ends.lower, -1.0)]
     return rows
 
 
@@ -334,7 +336,7 @@ def _full_rotation_rows(x: Array, constraints: tuple[Constraint, ...], width: in
     return rows
 
 
-def _as_minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
+def _minimised_value_and_slope(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
     objectives = minimised_values(objective, value)
     if objective.sense == "maximise":
         slope = -slope
@@ -343,7 +345,7 @@ def _as_minimised(objective: Objective, value: Array, slope: Array) -> tuple[Arr
     return np.where(np.isnan(objectives), np.inf, objectives), slope
 
 
-def _scaled_row(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
+def _scaled_excess_row(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
     scale = sign / (abs(bound) or 1.0)
     excess = scale * (value - bound)
     return np.where(np.isnan(excess), np.inf, excess), scale * slope

@@ -17,16 +17,16 @@ from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
-from ...objectives.tables.evaluate_quantities import can_move
+from ...objectives.tables.evaluate_quantities import designs_that_can_move
 from ..problem.constraint_violation import restated_constraints
 from ..problem.requirements import Constraint, Objective, Range
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
-from .box_conditions import Limits, is_swing_form, is_usable, unbounded_reason
+from .box_conditions import Limits, can_rule_out_boxes, is_swing_form, unbounded_reason
 from .enclosed_bar_demands import DemandCurve, demand_curves
 from .enclosed_cycle_curve import CycleCurve, machines_with_separate_peaks
 from .enclosed_machine import Numbers, parameter_lookup, parameters_over_boxes
-from .enclosed_swing import SwingBoxes, SwingCurve, swing_form
+from .enclosed_swing import SwingBoxes, SwingCurve, bounds_of_closed_form
 from .enclosure import Enclosure, free_unknown, join_parts
 
 Curve = CycleCurve | SwingCurve | DemandCurve
@@ -72,7 +72,7 @@ class Boxes:
         least = max((c.lower or 0.0 for c in constraints if c.quantity == TRANSMISSION_ANGLE.name), default=0.0)
         self.mechanism = problem.mechanism
         self.lean = math.cos((1.0 - _SLACK) * least)
-        usable = [c for c in constraints if is_usable(problem, c)]
+        usable = [c for c in constraints if can_rule_out_boxes(problem, c)]
         objective_names = [objective.quantity for objective in self.objectives]
         curves = {name: self._curves_of(name) for name in (*(c.quantity for c in usable), *objective_names)}
         self.costly = sorted((c for c in usable if curves[c.quantity]), key=lambda c: len(curves[c.quantity]))
@@ -93,7 +93,7 @@ class Boxes:
             return [SwingCurve(self.mechanism, quantity)]
         return []
 
-    def bound(self, lower: Array, upper: Array) -> Bounded:
+    def bound_boxes(self, lower: Array, upper: Array) -> Bounded:
         """Return the bounds for boxes from lower to upper (n, k)."""
         with np.errstate(all="ignore"):
             n, k = lower.shape
@@ -105,8 +105,8 @@ class Boxes:
             )
             for constraint in self.cheap:
                 limits.add_constraint(constraint, *self._closed_form_bounds(constraint.quantity, numbers))
-            middle = self.branch.dimensions(0.5 * (lower + upper))
-            moves = can_move(self.mechanism, self.problem.motion, middle)
+            middle = self.branch.designs_at_points(0.5 * (lower + upper))
+            moves = designs_that_can_move(self.mechanism, self.problem.motion, middle)
             curves: dict[str, Enclosure] = {}
             for name, curves_of_quantity in self.curves.items():
                 rows = np.flatnonzero(limits.alive)  # constraints before this one may have ruled out boxes
@@ -127,7 +127,7 @@ class Boxes:
                     corner[:, column] = _curve_bound(value, low, high, least=self.curves[name][0].least)
                 else:
                     value, known_least, known_greatest = self._closed_form_bounds(name, numbers)
-                    lowest, highest = (end.max(axis=1) for end in value.ends(low, high))
+                    lowest, highest = (end.max(axis=1) for end in value.least_and_greatest(low, high))
                     lowest = lowest if known_least is None else np.maximum(lowest, known_least)
                     highest = highest if known_greatest is None else np.minimum(highest, known_greatest)
                     corner[:, column] = _minimised_bound(objective, lowest, highest)
@@ -177,15 +177,15 @@ class Boxes:
         """Return the closed forms of a quantity (n, forms), and further lower and upper bounds."""
         quantity = self.problem.quantity(name)
         if is_swing_form(quantity):
-            return swing_form(self.mechanism, quantity, numbers), None, None
+            return bounds_of_closed_form(self.mechanism, quantity, numbers), None, None
         r, l, e = (numbers[slot] for slot in range(3))
         number = parameter_lookup(self.mechanism, numbers)
         forms = [formula(number) for formula in quantity.formulas(self.mechanism)]
         value = reduce(join_parts, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
-        greatest = value.ends()[1].max(axis=1)
+        greatest = value.least_and_greatest()[1].max(axis=1)
         if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
             return value, None, greatest
-        ends = [x.ends() for x in (r, l, magnitude(e))]
+        ends = [x.least_and_greatest() for x in (r, l, magnitude(e))]
         least_at, most_at = [
             [np.maximum(pair[rises != upper], 0.0)[:, 0] for pair, rises in zip(ends, quantity.rises, strict=True)]
             for upper in (True, False)
@@ -201,7 +201,7 @@ class Boxes:
 
 def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> Array:
     """Return a lower bound on minimised peaks or, with `least`, on negated least values."""
-    lowest, highest = value.ends(low, high)
+    lowest, highest = value.least_and_greatest(low, high)
     return np.asarray(-highest.min(axis=1) if least else lowest.max(axis=1))
 
 
@@ -223,7 +223,11 @@ def _ends_of_computed_dimension(
     name: str, unknowns: dict[str, Enclosure], bounds: Range, lean: float, n: int
 ) -> tuple[Array, Array]:
     """Return lower and upper end (n, 1) of a computed dimension. They follow from its bounds and r + |e| <= lean l."""
-    ends = [unknowns[dimension].ends() for dimension in DIMENSIONS if dimension != name and dimension in unknowns]
+    ends = [
+        unknowns[dimension].least_and_greatest()
+        for dimension in DIMENSIONS
+        if dimension != name and dimension in unknowns
+    ]
     slack = _SLACK * bounds.upper
     low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)
     if len(ends) < 2:

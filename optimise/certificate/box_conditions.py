@@ -40,7 +40,7 @@ def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
     if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | ClosedFormSwingQuantity):
         profile = " with a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
         return f"{quantity.title}{profile} has no bound over a range of designs"
-    has_forces = _has_forces(quantity)
+    has_forces = _depends_on_forces(quantity)
     if has_forces and mechanism.friction.acts and not (isinstance(quantity, SwingPeak) and quantity.free):
         return f"{quantity.title} has no bound over a range of designs with friction"
     if has_forces and (load := unboundable_load_reason(mechanism)):
@@ -59,19 +59,19 @@ def is_swing_form(quantity: Quantity) -> TypeGuard[ClosedFormSwingQuantity]:
     return isinstance(quantity, ClosedFormSwingQuantity) and quantity.measure != "angle"
 
 
-def _has_forces(quantity: Quantity) -> bool:
+def _depends_on_forces(quantity: Quantity) -> bool:
     if isinstance(quantity, CyclePeak):
         return quantity.signal.needs_forces
     return isinstance(quantity, BarPeak | SwingLeast) or (isinstance(quantity, SwingPeak) and quantity.state != ERROR)
 
 
-def is_usable(problem: Problem, constraint: Constraint) -> bool:
+def can_rule_out_boxes(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; other constraints are still met by every design that is counted."""
     stated = [bound for bound in (constraint.lower, constraint.upper) if bound is not None]
-    return len(ignored_sides(problem, constraint)) < len(stated)
+    return len(sides_that_rule_out_no_boxes(problem, constraint)) < len(stated)
 
 
-def ignored_sides(problem: Problem, constraint: Constraint) -> list[str]:
+def sides_that_rule_out_no_boxes(problem: Problem, constraint: Constraint) -> list[str]:
     """Describe the sides of a constraint that do not rule out boxes."""
     sides: tuple[tuple[str, float | None, Sense], ...] = (
         ("minimum", constraint.lower, "maximise"),
@@ -100,7 +100,7 @@ class Limits:
         """Require each part of a number (n, p) to be defined and at most `FEASIBLE` somewhere in the box."""
         if value.empty is not None:
             self.alive &= ~value.empty.any(axis=1)
-        self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
+        self.alive &= ~(value.least_and_greatest()[0] > FEASIBLE).any(axis=1)
         for part in range(value.centre.shape[1]):
             is_finite = np.isfinite(value.greatest_magnitude[:, part])
             self.rows.append(

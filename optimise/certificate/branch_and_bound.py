@@ -54,7 +54,7 @@ class Tree(Table):
             branches=branches,
         )
 
-    def volume(self) -> float:
+    def open_fraction(self) -> float:
         """Return the open fraction of the design box; all branches have equal weight."""
         total = 0.0
         for index, boxes in enumerate(self.branches):
@@ -69,15 +69,15 @@ class Tree(Table):
         places = np.array(list(itertools.product(range(count), repeat=k)), dtype=np.float64).reshape(count**k, k)
         return places / count, (places + 1.0) / count
 
-    def bound(self, index: int, lower: Array, upper: Array, pool: ThreadPoolExecutor) -> Bounded:
+    def bound_boxes(self, index: int, lower: Array, upper: Array, pool: ThreadPoolExecutor) -> Bounded:
         """Return the bounds for boxes of a branch, without boxes that cannot contain a feasible design."""
         self.bounded += len(lower)
         parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
-        first, *rest = pool.map(lambda part: self.branches[index].bound(lower[part], upper[part]), parts)
+        first, *rest = pool.map(lambda part: self.branches[index].bound_boxes(lower[part], upper[part]), parts)
         bounded = first.join(*rest)
         return bounded[bounded.alive]
 
-    def add(self, index: int, boxes: Bounded, corner: Array, excess: Array, counted: int) -> None:
+    def add_boxes(self, index: int, boxes: Bounded, corner: Array, excess: Array, counted: int) -> None:
         """Add boxes."""
         n, k = boxes.lower.shape
         wide = boxes.upper - boxes.lower
@@ -89,7 +89,7 @@ class Tree(Table):
         columns = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
         self.replace_content(self.join(Tree(*columns, branches=self.branches)))
 
-    def keep(self, rows: IntArray | Mask) -> None:
+    def keep_boxes(self, rows: IntArray | Mask) -> None:
         """Keep only these boxes."""
         self.replace_content(self[rows])
 
@@ -116,7 +116,7 @@ class Tree(Table):
             lower = np.stack([low, right], axis=1).reshape(-1, k)
             upper = np.stack([left, high], axis=1).reshape(-1, k)
             halves.append((index, lower, upper))
-        self.keep(np.setdiff1d(np.arange(len(self)), rows, assume_unique=True))
+        self.keep_boxes(np.setdiff1d(np.arange(len(self)), rows, assume_unique=True))
         return halves
 
 

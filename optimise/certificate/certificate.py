@@ -61,7 +61,7 @@ class Certificate:
         return self.epsilon <= self.requested
 
 
-def message_of(
+def certificate_message(
     status: Status, requested: float, proven: float, delivered: float, gap: float, designs: int, added: int
 ) -> str:
     """Describe the proof in words."""

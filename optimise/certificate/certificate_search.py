@@ -16,10 +16,10 @@ from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded_polish import polish_on_engine
 from .box_bounds import Boxes
-from .box_conditions import ignored_sides, is_usable
+from .box_conditions import can_rule_out_boxes, sides_that_rule_out_no_boxes
 from .branch_and_bound import Tree, bounding_threads
-from .certificate import Certificate, Status, Step, message_of
-from .covering_designs import choose_covering, excess_over_designs, greedy_cover, hypervolume_gap_bound
+from .certificate import Certificate, Status, Step, certificate_message
+from .covering_designs import choose_covering_designs, excess_over_designs, greedy_cover, hypervolume_gap_bound
 
 _BATCH = 4096  # boxes halved per batch
 _MOST = 4_000_000  # open boxes; memory for these is allocated
@@ -59,7 +59,7 @@ class Search:
             rows = variants == variant
             values[rows] = _exact_objectives(problem.part(variant), dimensions[rows])
         self.span, self.ideal = objective_ranges(problem, values), values.min(axis=0)
-        self.front = self._scaled(values)
+        self.front = self._scale_objectives(values)
         self.designs = self.front
         self.evaluators = [Evaluator(problem, branch) for branch in elimination_branches(problem)]
         self.tree = Tree.of_branches([Boxes(evaluator, self.span) for evaluator in self.evaluators])
@@ -71,7 +71,7 @@ class Search:
         self.gap, self.hole = 0.0, np.full(dimensions.shape[1], np.nan)
         self.stopped = False
 
-    def _scaled(self, values: Array) -> Array:
+    def _scale_objectives(self, values: Array) -> Array:
         return np.asarray((values - self.ideal) / self.span)
 
     # ---- the search -----------------------------------------------------------------------------------------------
@@ -82,7 +82,7 @@ class Search:
             for index in range(len(self.evaluators)):
                 self._process_boxes(index, *self.tree.initial_boxes(index), threads)
             while True:
-                self._report(progress)
+                self._report_step(progress)
                 rows = self.tree.rows_of_largest_excess(_BATCH)
                 if not len(rows) or self._should_stop():
                     break
@@ -112,34 +112,34 @@ class Search:
         is_open = np.ones(len(tree), dtype=bool)
         is_open[rows[covered]] = False
         if covered.any():
-            tree.keep(is_open)
+            tree.keep_boxes(is_open)
         return np.asarray(np.cumsum(is_open)[rows[~covered]] - 1)
 
     def _process_boxes(self, index: int, lower: Array, upper: Array, threads: object) -> None:
         """Bound boxes of a branch, close those that can be closed, and open the rest."""
-        boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
-        corner = self._scaled(boxes.corner)
+        boxes = self.tree.bound_boxes(index, lower, upper, threads)  # type: ignore[arg-type]
+        corner = self._scale_objectives(boxes.corner)
         gaps = excess_over_designs(corner, self.designs, enough=self.epsilon)
         wanting = np.flatnonzero(gaps > self.epsilon)
         if len(wanting):
             gaps[wanting] = self._add_covering_designs(index, boxes.trial[wanting], corner[wanting], gaps[wanting])
         covered = gaps <= self.epsilon
         self._record_closed_corners(corner[covered], gaps[covered])
-        self.tree.add(index, boxes[~covered], corner[~covered], gaps[~covered], len(self.designs))
+        self.tree.add_boxes(index, boxes[~covered], corner[~covered], gaps[~covered], len(self.designs))
 
     def _add_covering_designs(self, index: int, trial: Array, corner: Array, gaps: Array) -> Array:
         """Add designs that cover the corner of their box where no other does; return the excess of each corner."""
         evaluator = self.evaluators[index]
-        dimensions, values, violation = evaluator.screen(trial)
+        dimensions, values, violation = evaluator.screen_designs_objectives_violation(trial)
         good = np.flatnonzero(violation <= FEASIBLE)
         if not len(good):
             return gaps
-        scaled = self._scaled(values[good])
+        scaled = self._scale_objectives(values[good])
         lead = excess_over_designs(scaled, self.front)
         farthest = int(np.argmax(lead))
         if lead[farthest] > self.gap:
             self._remember_farthest_design(index, dimensions[good[farthest]])
-        rows = good[choose_covering(corner[good], scaled, self.epsilon)]
+        rows = good[choose_covering_designs(corner[good], scaled, self.epsilon)]
         if not len(rows):
             return gaps
         fresh = self._scaled_exact_objectives(index, dimensions[rows])
@@ -149,7 +149,7 @@ class Search:
         return excess_over_designs(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
     def _scaled_exact_objectives(self, index: int, dimensions: Array) -> Array:
-        return self._scaled(_exact_objectives(self.evaluators[index].problem, dimensions))
+        return self._scale_objectives(_exact_objectives(self.evaluators[index].problem, dimensions))
 
     def _remember_farthest_design(self, index: int, design: Array) -> None:
         """Store the design of a branch that lies farthest beyond the front so far."""
@@ -165,7 +165,7 @@ class Search:
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
 
-    def _report(self, progress: Callable[[Step], None] | None) -> None:
+    def _report_step(self, progress: Callable[[Step], None] | None) -> None:
         if progress is not None:
             tree = self.tree
             progress(
@@ -177,7 +177,7 @@ class Search:
 
     # ---- the result -----------------------------------------------------------------------------------------------
 
-    def certificate(self) -> Certificate:
+    def build_certificate(self) -> Certificate:
         """Return the certificate so far, with its added designs polished and reduced to as few as possible."""
         tree, proven = self.tree, self._proven_epsilon()
         needy = np.concatenate(self.needy)
@@ -213,11 +213,13 @@ class Search:
             table=self._table_of_designs(dimensions) if len(dimensions) else pd.DataFrame(),
             boxes=tree.bounded,
             open=len(tree),
-            remaining=tree.volume(),
+            remaining=tree.open_fraction(),
             worst_open_box=open_range,
             notes=self._notes(),
             seconds=time.perf_counter() - self.start,
-            message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
+            message=certificate_message(
+                status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)
+            ),
         )
 
     def _table_of_designs(self, dimensions: Array) -> pd.DataFrame:
@@ -229,10 +231,12 @@ class Search:
         constraints = ((part, item) for part in self.problem.parts() for item in restated_constraints(part))
         for part, constraint in constraints:
             title = part.quantity(constraint.quantity).title
-            if not is_usable(part, constraint):
+            if not can_rule_out_boxes(part, constraint):
                 notes.append(f"the bounds ignore the requirement on {title}")
                 continue
-            notes += [f"the bounds ignore the {word} of {title}" for word in ignored_sides(part, constraint)]
+            notes += [
+                f"the bounds ignore the {word} of {title}" for word in sides_that_rule_out_no_boxes(part, constraint)
+            ]
         return tuple(dict.fromkeys(notes))
 
     def _drop_redundant_designs(self, needy: Array) -> None:
@@ -252,7 +256,7 @@ class Search:
                     return
                 k = evaluator.dimension
                 part = polish_on_engine(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
-                fresh = self._scaled_exact_objectives(index, evaluator.branch.dimensions(part.u))
+                fresh = self._scaled_exact_objectives(index, evaluator.branch.designs_at_points(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
                 self.added.u[rows[better], :k] = part.u[better]
                 self.added.values[rows[better]] = fresh[better]
@@ -264,5 +268,5 @@ class Search:
         k = evaluator.dimension
         low, high = tree.lower[row, :k], tree.upper[row, :k]
         corners = np.array(list(itertools.product((0.0, 1.0), repeat=k))).reshape(2**k, k)
-        corner_designs = evaluator.branch.dimensions(low + (high - low) * corners)
+        corner_designs = evaluator.branch.designs_at_points(low + (high - low) * corners)
         return np.stack([corner_designs.min(axis=0), corner_designs.max(axis=0)], axis=1)

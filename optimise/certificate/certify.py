@@ -61,7 +61,7 @@ def certify_designs(
         problem, chosen = _with_variant_per_combination(problem, chosen)
     search = Search(problem, dimensions, chosen, epsilon, seconds, cancelled)
     search.run(progress)
-    return search.certificate()
+    return search.build_certificate()
 
 
 def _with_variant_per_combination(problem: Problem, variants: IntArray) -> tuple[Problem, IntArray]:
@@ -70,12 +70,14 @@ def _with_variant_per_combination(problem: Problem, variants: IntArray) -> tuple
     A design's variant may be any combination of its choices: the design itself holds their values.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
-    counts = [axis.count for axis in axes]
+    counts = [axis.combination_count for axis in axes]
     if sum(counts) > MOST_COMBINATIONS:
         raise InputError(
             f"a certificate can cover at most {MOST_COMBINATIONS:,} combinations of listed values; got "
             f"{sum(counts):,} of {', '.join(item.name for item in problem.discrete)}; list fewer, or certify the "
             "job with ranges"
         )
-    rows = [(index, row) for index, axis in enumerate(axes) for row in axis.designs(0, axis.count)]
+    rows = [
+        (index, row) for index, axis in enumerate(axes) for row in axis.combinations_between(0, axis.combination_count)
+    ]
     return problem_with_combinations(problem, rows), np.cumsum([0, *counts[:-1]])[variants]

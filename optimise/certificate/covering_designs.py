@@ -8,7 +8,7 @@ et al., "Performance assessment of multiobjective optimizers", IEEE Trans. Evol.
 import numpy as np
 
 from ...model.arrays import Array, IntArray
-from ...model.kernel.batches import in_chunks
+from ...model.kernel.batches import run_in_chunks
 from ...model.kernel.kernel import Flags, Integers, Row, Table, kernel
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume
@@ -53,7 +53,7 @@ def excess_over_designs(
     def work(begin: int, end: int) -> None:
         _excess_of_points(points[begin:end], designs, start[begin:end], enough, out[begin:end])
 
-    in_chunks(n, work, size=4096)
+    run_in_chunks(n, work, size=4096)
     return out
 
 
@@ -81,7 +81,7 @@ def _choose_cover(points: Table, values: Table, epsilon: float, chosen: Flags) -
                 chosen[i] = True
 
 
-def choose_covering(points: Array, values: Array, epsilon: float) -> IntArray:
+def choose_covering_designs(points: Array, values: Array, epsilon: float) -> IntArray:
     """Return rows of values (n, m): each covers its point (n, m) to within epsilon, and no earlier one does."""
     chosen = np.zeros(len(points), dtype=bool)
     _choose_cover(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)

@@ -17,12 +17,12 @@ from ...model.arrays import Array
 from ...model.dynamics.torque import Forces
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion
-from ...model.machine.cylinder_machines import machines_of_turns, single_cylinder
+from ...model.machine.cylinders_as_machines import machines_of_turns, single_cylinder_machine
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Raw
 from ...model.signals.signals import Signal
-from ...model.strength.section_forces import ROD, stress_along, stress_at_length_fraction
+from ...model.strength.section_forces import ROD, stress_at_length_fraction, stress_coefficients_of_link
 from ...model.strength.stress_cycle import stress_peaks
 from ...model.strength.stress_locations import Eye, StressLocation, eye_stress_factor_formulas
 from ...objectives.bar_pieces import FORCE, BarPeak, Criteria, SectionLoad
@@ -79,11 +79,11 @@ class StressCurve(CycleCurve):
     ) -> Any:
         """Return the stress at the location; in an eye, times w - D.
 
-        state: arguments of `stress_along` up to forces.
+        state: arguments of `stress_coefficients_of_link` up to forces.
         """
         location = self.location
         slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
-        c = stress_along(location.part, *state, 0.0, (number(slot), number(slot + 1), number(slot + 2)))
+        c = stress_coefficients_of_link(location.part, *state, 0.0, (number(slot), number(slot + 1), number(slot + 2)))
         if not isinstance(location, Eye):
             return stress_at_length_fraction(c, side if location.bent else 0.0, share)
         axial, bending = eye_stress_factor_formulas(self.mechanism, location)
@@ -114,7 +114,7 @@ class DemandCurve:
         value: Enclosure
         if self.least:
             size = 0.5 * (size + magnitude(size))
-            rest = np.where(peak.ends()[0] > 0.0, peak.rest, np.nan)
+            rest = np.where(peak.least_and_greatest()[0] > 0.0, peak.rest, np.nan)
             value = size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
         else:
             value = peak * scale / size
@@ -123,7 +123,7 @@ class DemandCurve:
 
 def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
     """Return the curves whose greatest or least value is the quantity."""
-    single = single_cylinder(mechanism)
+    single = single_cylinder_machine(mechanism)
     curves: list[DemandCurve] = []
     for demand in quantity.section_loads(mechanism):
         peaks: list[CycleCurve]

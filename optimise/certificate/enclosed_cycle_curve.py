@@ -23,19 +23,19 @@ from ...model.dynamics.torque import Forces, forces_without_friction
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
-from ...model.machine.cylinder_machines import (
+from ...model.machine.cylinders_as_machines import (
     TURN,
     Member,
-    cylinder_machines,
-    is_treated_as_shaft,
+    has_cylinders_or_speed_profile,
+    machine_of_each_cylinder,
     machines_of_turns,
-    single_cylinder,
+    single_cylinder_machine,
 )
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.fast_torque_and_error import is_supported, screened_maxima
+from ...model.signals.fast_torque_and_error import screened_maxima, supports_screening
 from ...model.signals.peaks import find_peaks
-from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_motion
+from ...model.signals.shaft_curves import VECTORS, components_of_force_signal, components_of_motion_signal
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
@@ -52,7 +52,7 @@ def machines_with_separate_peaks(mechanism: Mechanism, kind: Signal) -> tuple[Me
     If the cycle of a single crank has two turns, each turn is a separate machine. So is each cylinder, if the signal
     does not add up over the cylinders.
     """
-    if not is_treated_as_shaft(mechanism):
+    if not has_cylinders_or_speed_profile(mechanism):
         return machines_of_turns(mechanism) if kind.needs_forces else (mechanism,)
     alike = equivalent_single_cranks(mechanism, kind)
     every = mechanism.arrangement
@@ -82,11 +82,13 @@ class CycleCurve:
 
     def __init__(self, mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> None:
         self.kind, self.during, self.mechanism = kind, during, mechanism
-        single = single_cylinder(mechanism)
+        single = single_cylinder_machine(mechanism)
         of_turns = machines_of_turns(single) if self.kind.needs_forces else (single,)
         self.machines = [BoxMachine(machine, *signal_inputs(machine, self.kind)) for machine in of_turns]
         self.members = (
-            cylinder_machines(mechanism) if is_treated_as_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
+            machine_of_each_cylinder(mechanism)
+            if has_cylinders_or_speed_profile(mechanism)
+            else (Member(single, 0.0, 0.0, 0.0),)
         )
         self.watch = cycle_window(self.machines[0].mechanism, self.kind, during=during)
         self.pace = speed_ratio_of(mechanism)
@@ -97,7 +99,7 @@ class CycleCurve:
 
     def peak_positions(self, designs: Array) -> Array:
         """Return each design's crank angle at the peak, rad, (n, 1); for a crankshaft, the shaft's angle."""
-        if is_supported(self.mechanism, self.kind, during=self.during):
+        if supports_screening(self.mechanism, self.kind, during=self.during):
             return screened_maxima(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
         angles = find_peaks(self.mechanism, self.kind, designs, during=self.during, limit=1).angles
         return np.where(np.isfinite(angles), angles, 0.0)
@@ -125,7 +127,7 @@ class CycleCurve:
             return [angles]
         r, l, e = middle[:, :3].T[:, :, None]
         pace = np.abs(motion(np.sin(angles), np.cos(angles), r, l, e, self.mechanism.sign).x_1)
-        width = np.sum([np.subtract(*numbers[slot].ends()[::-1]) for slot in range(3)], axis=0)
+        width = np.sum([np.subtract(*numbers[slot].least_and_greatest()[::-1]) for slot in range(3)], axis=0)
         away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
         return [angles, angles - away, angles + away]
 
@@ -136,8 +138,8 @@ class CycleCurve:
 
         Two pairs if it jumps at the angle, as only a single cylinder does at its dead centre.
         """
-        designs = [machine.design(numbers) for machine in self.machines]
-        read = read or self._component
+        designs = [machine.derived_design(numbers) for machine in self.machines]
+        read = read or self._components_of_signal
         parts = [self._cylinder_components(member, designs, angles, middle, read) for member in self.members]
         sums: list[tuple[Any, Any]] = []
         for pairs in zip(*parts, strict=True):
@@ -145,8 +147,8 @@ class CycleCurve:
             sums.append((sum(xs[1:], xs[0]), sum(ys[1:], ys[0])))
         return sums
 
-    def _component(self, f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
-        x, y = vector_of_force(int(self.kind), f, m, d)
+    def _components_of_signal(self, f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
+        x, y = components_of_force_signal(int(self.kind), f, m, d)
         return x, y
 
     def _cylinder_components(
@@ -216,7 +218,7 @@ class CycleCurve:
             ratio, slope, bend = _speed_ratio_and_derivatives(self.pace, local - member.lead)
             plain = designs[0][0].speed
             rate = plain * plain * (slope * slope + ratio * bend)
-        x, y = (nothing + part for part in vector_of_motion(int(kind), sine, cosine, m, d, rate))
+        x, y = (nothing + part for part in components_of_motion_signal(int(kind), sine, cosine, m, d, rate))
         if kind in (Signal.SHAKING_FORCE, Signal.ROCKING_COUPLE) and member.bank:
             c, s = math.cos(member.bank), math.sin(member.bank)
             x, y = c * x - s * y, s * x + c * y
@@ -226,7 +228,7 @@ class CycleCurve:
         self, machine: BoxMachine, d: Design, block: Any, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         sine, cosine, local, m = place
-        load = machine.load(m, d, block, local, outward)
+        load = machine.slider_load(m, d, block, local, outward)
         f = forces_without_friction(sine, cosine, m, d, load)
         if self.kind not in (Signal.TORQUE, Signal.POWER):
             x, y = read(f, sine, cosine, m, d)
@@ -241,7 +243,7 @@ class CycleCurve:
         counted: Any = local
         if datum != "zero crank angle":
             start = dead_centre_angle(d, np.asarray(datum == "outer dead centre"))
-            low, high = start.ends()
+            low, high = start.least_and_greatest()
             counted = local - (start - TURN * np.floor(low / TURN))
             counted = Enclosure(
                 counted.centre,
@@ -254,7 +256,7 @@ class CycleCurve:
             if isinstance(counted, Enclosure)
             else enclosure_of_ends(counted * (way / TURN), counted * (way / TURN), 0)
         )
-        low, high = turned.ends()
+        low, high = turned.least_and_greatest()
         with np.errstate(invalid="ignore"):
             return np.mod(np.floor(low), 2.0) == 0.0, np.floor(low) == np.floor(high)
 

@@ -13,7 +13,7 @@ from ...model.arrays import Array, Mask
 from ...model.dynamics.torque import load_without_pieces
 from ...model.kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ...model.kinematics.position import motion
-from ...model.machine.cylinder_machines import TURN
+from ...model.machine.cylinders_as_machines import TURN
 from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.engine import LimitedPressure
@@ -45,7 +45,9 @@ def crank_sine_and_cosine(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
-def angle_near(d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, near: Array | None = None) -> Enclosure:
+def crank_angle_near(
+    d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, near: Array | None = None
+) -> Enclosure:
     """Return the crank angle, rad, from its sine and cosine: theta = atan2(e, x) + side acos(...).
 
     near: angles (n, p) less than half a turn away, to which whole turns are added. NaN where the angle ranges over half
@@ -116,9 +118,9 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
     outward: its sign determines the stroke; where the sign is uncertain, the force spans both strokes.
     """
     sign = 1.0 if load.head == "inner dead centre" else -1.0
-    low, high = outward.ends()
+    low, high = outward.least_and_greatest()
     sides = [_pressure(load, share, stroke, expanding=(sign > 0.0) == way) for way in (True, False)]
-    ends = [side.ends() for side in sides]
+    ends = [side.least_and_greatest() for side in sides]
     either_stroke = enclosure_of_ends(
         np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes)
     )
@@ -129,10 +131,12 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
 def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding: bool) -> Enclosure:
     """Return the pressure during one stroke, Pa; it falls with the distance from the top."""
     k = len(share.slopes)
-    first, last = (np.clip(end, 0.0, 1.0) for end in share.ends())
+    first, last = (np.clip(end, 0.0, 1.0) for end in share.least_and_greatest())
     if load.clearance_volume and load.compression_exponent:
         # It rises (expansion) or falls (compression) with the clearance, so the corners bound it.
-        least, greatest = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
+        least, greatest = (
+            load.clearance + load.clearance_volume / (load.area * end) for end in stroke.least_and_greatest()[::-1]
+        )
         near, far = (greatest, least) if expanding else (least, greatest)
         return enclosure_of_ends(
             _pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k
@@ -213,7 +217,7 @@ class BoxMachine:
     def __init__(self, mechanism: Mechanism, raw: Array, loads: Loads) -> None:
         self.mechanism, self.raw, self.loads = mechanism, raw, loads
 
-    def design(self, numbers: Numbers) -> tuple[Design, Any]:
+    def derived_design(self, numbers: Numbers) -> tuple[Design, Any]:
         """Return the derived design, and its parameter block for the loads."""
         raw = self.raw.astype(object)[:, None]
         for slot, value in numbers.items():
@@ -223,7 +227,7 @@ class BoxMachine:
         _derive(raw, self.loads.kind, self.loads.datum, block)
         return design_at(block, 0), block
 
-    def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
+    def slider_load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
         """Return the load on the slider, N outward. outward: has the sign of the slider's outward velocity."""
         load: Any = load_without_pieces(m, d, select_by_stroke(outward, d.outward_force, d.inward_force))
         way = select_by_stroke(outward, 1.0, -1.0)
@@ -277,7 +281,7 @@ class BoxMachine:
 
 def interpolate_force(x: Enclosure, at: Array, force: Array) -> Enclosure:
     """Return the table's force over an enclosed position: the chord, and the greatest distance of the knots from it."""
-    low, high = x.ends()
+    low, high = x.least_and_greatest()
     first, last = np.interp(low, at, force), np.interp(high, at, force)
     wide = high > low
     slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
@@ -292,7 +296,7 @@ def interpolate_force(x: Enclosure, at: Array, force: Array) -> Enclosure:
 
 def select_by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
     """Return one number for the outward stroke, another for the inward one, and both where the stroke is uncertain."""
-    low, high = outward.ends()
+    low, high = outward.least_and_greatest()
     k = len(outward.slopes)
     if not isinstance(out, Enclosure) and not isinstance(back, Enclosure):
         least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))

@@ -22,11 +22,11 @@ from ...model.signals.signals import design_motion
 from ...model.swing.end_angles import swing_ends, swing_start_column
 from ...model.swing.forces import frictionless_pin_force, pin_distance_from_crank_line
 from ...model.swing.law import corner_times, law_code, travel_and_derivatives_at
-from ...model.swing.peaks import negated_least_drive_peaks, swing_peaks
-from ...model.swing.swing import Swing, without_inertia
+from ...model.swing.peaks import peaks_of_negated_least_drive, swing_peaks
+from ...model.swing.swing import Swing, slow_swing
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
-from .enclosed_machine import BoxMachine, Numbers, angle_near, crank_sine_and_cosine
+from .enclosed_machine import BoxMachine, Numbers, crank_angle_near, crank_sine_and_cosine
 from .enclosure import Enclosure, constant_like, join_parts, sign_of
 
 _SIDE_STEP = 1e-9  # fraction of the time; moves to one side of a corner in the law, or of a step
@@ -62,17 +62,17 @@ class SwingBoxes:
     """A swing over boxes of designs, without friction. slow: without inertia."""
 
     def __init__(self, mechanism: Mechanism, swing: Swing, *, slow: bool = False) -> None:
-        self.mechanism, self.swing = mechanism, without_inertia(swing) if slow else swing
+        self.mechanism, self.swing = mechanism, slow_swing(swing) if slow else swing
         self.machine = BoxMachine(mechanism, *raw_inputs_with_all_features(mechanism))
         self.varies = swing_start_column(mechanism) is not None
         self.slider = swing.driver == "slider"
         self.per_time = 0.0 if self.swing.duration is None else 1.0 / self.swing.duration
         loads = mechanism.with_largest_variables.loads
-        self.needs_angle = any(load.on_crank or load.has_knots_along_rotation for load in loads)
+        self.needs_angle = any(load.on_crank or load.has_knots_in_sense_of_rotation for load in loads)
         self.steps = any(load.has_steps for load in loads)
         self.corners = corner_times(self.swing.law, self.swing.law_pieces)
 
-    def ends(self, numbers: Numbers, d: Design) -> _Ends:
+    def swing_ends(self, numbers: Numbers, d: Design) -> _Ends:
         """Return both ends of the swing."""
         swing = self.swing
         first = numbers[START[swing.stated_for]] if self.varies else constant_like(swing.start, d.r)
@@ -80,7 +80,7 @@ class SwingBoxes:
         if swing.stated_for == "slider":
             side = constant_like(1.0 if swing.side == "left" else -1.0, d.r).centre
             first_angle, last_angle = (
-                angle_near(d, x, *crank_sine_and_cosine(d, x, side), side) for x in (first, last)
+                crank_angle_near(d, x, *crank_sine_and_cosine(d, x, side), side) for x in (first, last)
             )
             return _Ends((first_angle, last_angle), (first, last), side)
         positions = [design_motion(angle.sin(), angle.cos(), d).x for angle in (first, last)]
@@ -107,14 +107,16 @@ class SwingBoxes:
         self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0
     ) -> _State:
         """Return the state at fractions of the travel (n, p), with derivatives with respect to the fraction of time."""
-        d, block = self.machine.design(numbers)
-        ends = self.ends(numbers, d)
+        d, block = self.machine.derived_design(numbers)
+        ends = self.swing_ends(numbers, d)
         first, last = ends.positions if self.slider else ends.angles
         travel = last - first
         place = first + travel * way
         if self.slider:
             sine, cosine = crank_sine_and_cosine(d, place, ends.side)
-            angle = angle_near(d, place, sine, cosine, ends.side, 0.5 * (ends.angles[0].centre + ends.angles[1].centre))
+            angle = crank_angle_near(
+                d, place, sine, cosine, ends.side, 0.5 * (ends.angles[0].centre + ends.angles[1].centre)
+            )
         else:
             sine, cosine, angle = place.sin(), place.cos(), place
         m = design_motion(sine, cosine, d)
@@ -133,7 +135,7 @@ class SwingBoxes:
 
     def drive_torque_or_force(self, at: _State) -> Enclosure:
         """Return the torque on the crank, N m, or the force on the slider, N, without friction."""
-        load = self.machine.load(at.m, at.d, at.block, at.angle, at.outward)
+        load = self.machine.slider_load(at.m, at.d, at.block, at.angle, at.outward)
         on_crank = self.machine.crank_torque_of_loads(at.m, at.d, at.block, at.angle, at.outward, at.way)
         if not self.slider:
             torque: Enclosure = forces_without_friction(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
@@ -163,8 +165,8 @@ class SwingBoxes:
 
     def closure_violation(self, numbers: Numbers) -> Enclosure:
         """Return |e - r sin(theta)| / l - 1 at both ends (n, 2), below zero where the linkage closes."""
-        d, _ = self.machine.design(numbers)
-        ends = self.ends(numbers, d)
+        d, _ = self.machine.derived_design(numbers)
+        ends = self.swing_ends(numbers, d)
         opening: Enclosure = reduce(
             join_parts, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles)
         )
@@ -203,7 +205,7 @@ class SwingCurve:
         if isinstance(quantity, ClosedFormSwingQuantity):
             return _least_transmission_angle_position(mechanism, swing, designs)[:, None]
         if isinstance(quantity, SwingLeast):
-            found = negated_least_drive_peaks(mechanism, swing, designs, back=quantity.back, limit=1).places
+            found = peaks_of_negated_least_drive(mechanism, swing, designs, back=quantity.back, limit=1).places
         elif quantity.state is None:
             return np.full((len(designs), 1), self.default_position)
         else:
@@ -221,7 +223,9 @@ class SwingCurve:
             columns += [np.full_like(at, 1.0), np.full_like(at, 1.0 + _SIDE_STEP)]
         if self.boxes.steps and not self.at_ends:
             # A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
-            width: Any = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].greatest_magnitude for slot in (0, 1))
+            width: Any = sum(
+                np.ptp(numbers[slot].least_and_greatest(), axis=0) / numbers[slot].greatest_magnitude for slot in (0, 1)
+            )
             away = np.minimum(4.0 * width, _FARTHEST)
             columns += [np.clip(at - away, first, last), np.clip(at + away, first, last)]
         return self._enclose_at(numbers, np.concatenate(columns, axis=1))
@@ -239,10 +243,13 @@ class SwingCurve:
         probes = [share - _SIDE_STEP, share + _SIDE_STEP] if boxes.corners else [share]
         return reduce(
             join_parts,
-            (self._value(boxes.state_at_time(numbers, share, np.clip(probe, 0.0, 1.0), back)) for probe in probes),
+            (
+                self._value_of_quantity(boxes.state_at_time(numbers, share, np.clip(probe, 0.0, 1.0), back))
+                for probe in probes
+            ),
         )
 
-    def _value(self, at: _State) -> Enclosure:
+    def _value_of_quantity(self, at: _State) -> Enclosure:
         state = self.quantity.state if isinstance(self.quantity, SwingPeak) else None
         if state == ERROR:
             return self.boxes.position_error(at)
@@ -269,11 +276,11 @@ def _least_transmission_angle_position(mechanism: Mechanism, swing: Swing, desig
     return np.where((found >= 0.0) & (found <= 1.0), found, 0.0)
 
 
-def swing_form(mechanism: Mechanism, quantity: ClosedFormSwingQuantity, numbers: Numbers) -> Enclosure:
+def bounds_of_closed_form(mechanism: Mechanism, quantity: ClosedFormSwingQuantity, numbers: Numbers) -> Enclosure:
     """Return lower and upper bounds on the slider's travel, m, or the crank's angle, rad."""
     assert quantity.swing is not None
     boxes = SwingBoxes(mechanism, quantity.swing, slow=True)
-    ends = boxes.ends(numbers, boxes.machine.design(numbers)[0])
+    ends = boxes.swing_ends(numbers, boxes.machine.derived_design(numbers)[0])
     first, last = ends.positions if quantity.measure == "travel" else ends.angles
     size: Enclosure = magnitude(last - first)
     return size

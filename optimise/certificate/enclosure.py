@@ -56,7 +56,7 @@ class Enclosure:
             self._size = np.asarray(np.abs(self.centre) + self.radius)
         return self._size
 
-    def ends(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
+    def least_and_greatest(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
         """Return the least and the greatest value, infinite where unknown.
 
         low, high: (k, n), the relevant part of [-1, 1]^k; all of it by default.
@@ -270,7 +270,7 @@ def constant_like(value: Any, like: Enclosure) -> Enclosure:
 
 def sign_of(value: Enclosure) -> Array:
     """Return a number's sign if it is constant over a box; otherwise NaN."""
-    low, high = value.ends()
+    low, high = value.least_and_greatest()
     return np.where(low > 0.0, 1.0, np.where(high < 0.0, -1.0, np.nan))
 
 

@@ -10,7 +10,7 @@ from ..problem.problem import Problem
 from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.evaluation import Evaluator
 from .box_bounds import Boxes
-from .box_conditions import is_usable
+from .box_conditions import can_rule_out_boxes
 from .branch_and_bound import Tree, bounding_threads
 
 SECONDS = 5.0
@@ -38,11 +38,16 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
         while fresh:
             for index, lower, upper in fresh:
                 poll()
-                boxes = tree.bound(index, lower, upper, threads)
+                boxes = tree.bound_boxes(index, lower, upper, threads)
                 n = len(boxes.lower)
-                if n and (tree.branches[index].evaluator.screen(boxes.trial)[2] <= FEASIBLE).any():
+                if (
+                    n
+                    and (
+                        tree.branches[index].evaluator.screen_designs_objectives_violation(boxes.trial)[2] <= FEASIBLE
+                    ).any()
+                ):
                     return False
-                tree.add(index, boxes, np.zeros((n, 0)), np.prod(boxes.upper - boxes.lower, axis=1), 0)
+                tree.add_boxes(index, boxes, np.zeros((n, 0)), np.prod(boxes.upper - boxes.lower, axis=1), 0)
             if not len(tree):
                 return True
             late = time.perf_counter() - start > seconds or tree.bounded > _MOST
@@ -56,5 +61,5 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
 def _requirement_evaluator(problem: Problem, branch: EliminationBranch) -> Evaluator:
     """Return an evaluator of the requirements that rule out boxes; it never rules out a design that meets them."""
     evaluator = Evaluator(problem, branch)
-    evaluator.constraints = tuple(item for item in evaluator.constraints if is_usable(problem, item))
+    evaluator.constraints = tuple(item for item in evaluator.constraints if can_rule_out_boxes(problem, item))
     return evaluator

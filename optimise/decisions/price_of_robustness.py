@@ -37,7 +37,7 @@ class RobustCost:
     robust: Array
     keeps: int
 
-    def cost(self, column: int, *, maximised: bool) -> float:
+    def cost_of_robustness(self, column: int, *, maximised: bool) -> float:
         """Return by how much the robust front's best value falls short of the nominal best, in display units."""
         best = np.max if maximised else np.min
         away = float(best(self.nominal[:, column]) - best(self.robust[:, column]))

@@ -27,7 +27,7 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
             "factor": item.unit.factor,
             "column": item.field,
             "better": item.better,
-            "needs": item.required,
+            "needs": item.job_requirements_text,
         }
         for item in listed
     }

@@ -20,7 +20,7 @@ from ...model.errors import InputError, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage_values import implausible_length_text
 from ..front.dominance import dominating
-from ..front.front import ParetoFront, bounds_of_name, require_front
+from ..front.front import ParetoFront, least_and_greatest_of_bounds, require_front
 from ..front.hypervolume import ideal_and_range
 from ..front.stationarity import STATIONARY
 from ..job.mistake_messages import key_of_location
@@ -33,7 +33,7 @@ from ..search.candidates import FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded_polish import polish_on_engine
-from ..search.sample_and_zoom import Archive, Run, enumerate_branches, explore, searched_evaluators
+from ..search.sample_and_zoom import Archive, Run, enumerate_branches, sample_and_zoom, searched_evaluators
 from ..search.sampling import random_generator
 from ..solve import solve
 
@@ -80,10 +80,10 @@ def nearest_optimal_design(
         )
     finished = enumerate_branches(extended_problem, evaluators, run).only_enumerated(span)
     free = searched_evaluators(evaluators)
-    archive = explore(extended_problem, free, run) if free else Archive.empty(len(span))
+    archive = sample_and_zoom(extended_problem, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance_to_design(archive.values, values, span), kind="stable")[:_STARTS]
-    for index, u in archive[order].by_branch(evaluators):
-        finished.add(index, polish_on_engine(evaluators[index], u, span))
+    for index, u in archive[order].points_by_branch(evaluators):
+        finished.add_feasible(index, polish_on_engine(evaluators[index], u, span))
     if not len(finished):
         return _keep_nearest(solve(extended_problem), values, span)
     _add_nearer_designs(finished, free, archive, values, extended_problem.settings.seed)
@@ -107,7 +107,7 @@ def like(
                 f"a requirement for like must be a Constraint; got {item!r}; write it like "
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
-    ranges = {name: bounds_of_name(name, ends) for name, ends in (ranges or {}).items()}
+    ranges = {name: least_and_greatest_of_bounds(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # raises an error for an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
     if (doubt := implausible_length_text(ends)) is not None:
@@ -214,13 +214,13 @@ def _add_nearer_designs(
     for _ in range(_ROUNDS):
         parents = _rank_by_distance(finished, archive, values)[:_PARENTS]
         before = distance_to_design(finished.values[parents[:1]], values, finished.span)[0]
-        for index, u in finished[parents].by_branch(evaluators):
+        for index, u in finished[parents].points_by_branch(evaluators):
             evaluator = evaluators[index]
             points = np.repeat(u, _CHILDREN, axis=0)
             points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
             points = points[evaluator.can_evaluate(points)]
             if len(points):
-                finished.add(index, polish_on_engine(evaluator, points, finished.span))
+                finished.add_feasible(index, polish_on_engine(evaluator, points, finished.span))
         after = distance_to_design(
             finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span
         )[0]
@@ -233,7 +233,7 @@ def _add_nearer_designs(
 
 def _rank_by_distance(finished: FrontCandidates, archive: Archive, values: Array) -> IntArray:
     """Return the rows of non-dominated designs, nearest first; stationary ones before all others."""
-    rows = finished.best()
+    rows = finished.nondominated_rows()
     if archive.is_feasible.any():  # samples within a band around the constraints prove nothing
         scaled, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
         beaten = dominating(-scaled, -screened, clearly=_BEATEN)

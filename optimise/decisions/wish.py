@@ -70,7 +70,7 @@ class Wishes:
         self._branches = drop_mirrored_branches(front.problem, elimination_branches(front.problem))
         self._starts = self._starting_designs()
 
-    def wish(self, texts: Mapping[str, object], *, row: int | None = None) -> Wished:
+    def design_nearest_to_wishes(self, texts: Mapping[str, object], *, row: int | None = None) -> Wished:
         """Return the design nearest to the wishes; see `wish`."""
         front = self.front
         if row is not None:
@@ -87,7 +87,7 @@ class Wishes:
             return Wished(found=nothing, row=row, wishes=wishes, value=np.nan, outcomes=(), message=message)
         index, u, value = best
         finished = FrontCandidates.without_designs(self.span)
-        finished.add(index, polish_designs(evaluators[index], u[None], self.span, iterations=0))
+        finished.add_feasible(index, polish_designs(evaluators[index], u[None], self.span, iterations=0))
         front_of_wish = assemble_front(front.problem, evaluators, finished, run)
         outcomes = outcomes_of(front, wishes, aims, row, front_of_wish)
         return Wished(found=front_of_wish, row=row, wishes=wishes, value=value, outcomes=outcomes)
@@ -102,13 +102,13 @@ class Wishes:
         for index, evaluator in enumerate(self._evaluators()):
             branch = evaluator.branch
             on_branch = (variants == branch.variant) & (np.sign(front.dimensions[:, 2]) != -branch.sign)
-            u = branch.coordinates(front.dimensions)
+            u = branch.points_of_designs(front.dimensions)
             if on_branch.any():
                 feasible = np.ones(int(on_branch.sum()), np.bool_)
                 parts.append(Candidates(np.full(len(feasible), index), u[on_branch], front.values[on_branch], feasible))
             elsewhere = np.unique(u[~on_branch], axis=0)
             if len(elsewhere):
-                _, values, violation = evaluator.screen(elsewhere, band=BANDS[-1])
+                _, values, violation = evaluator.screen_designs_objectives_violation(elsewhere, band=BANDS[-1])
                 usable = np.isfinite(values).all(axis=1) & evaluator.can_evaluate(elsewhere)
                 rest = (
                     np.full(int(usable.sum()), index),
@@ -123,7 +123,7 @@ class Wishes:
         """Return the achievement function, and the desired values as minimised, SI."""
         m = len(wishes)
         weights, reference, ceilings = np.zeros(m), np.zeros(m), np.full(m, np.inf)
-        reference_values = None if row is None else self._scaled(self.front.values[row])
+        reference_values = None if row is None else self._scale_objectives(self.front.values[row])
         aims: list[float | None] = [None] * m
         for column, wish in enumerate(wishes):
             if wish.value is not None:
@@ -138,7 +138,7 @@ class Wishes:
                 weights[column] = float(wish.kind == "improve")
         return Form(weights, reference, ceilings, SUM), aims
 
-    def _scaled(self, values: Array) -> Array:
+    def _scale_objectives(self, values: Array) -> Array:
         return np.asarray((values - self.ideal) / self.span)
 
     def _solve(self, form: Form, evaluators: list[Evaluator]) -> tuple[int, Array, float] | None:
@@ -146,10 +146,10 @@ class Wishes:
 
         None if no start leads to a design.
         """
-        scaled = self._scaled(self._starts.values)
+        scaled = self._scale_objectives(self._starts.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         free = replace(form, ceilings=np.full(len(form.weights), np.inf))
-        merits = free.value(scaled) + _OUTSIDE * (excess + ~self._starts.is_feasible)
+        merits = free.form_value(scaled) + _OUTSIDE * (excess + ~self._starts.is_feasible)
         branch, tried = self._starts.branch, np.zeros(len(merits), np.bool_)
         ends: list[tuple[float, int, Array]] = []  # the best first
         chosen = self._promising_branches(merits)
@@ -216,4 +216,4 @@ def wish(front: ParetoFront, wishes: Mapping[str, object], *, row: int | None = 
     `wish(front, {"peak_torque": "110 N m", "transmission_angle": "45 deg"})`. For many wishes on one front, `Wishes` is
     faster. Raises `InputError` for contradictory wishes, and for a front without designs or with one objective.
     """
-    return Wishes(front).wish(wishes, row=row)
+    return Wishes(front).design_nearest_to_wishes(wishes, row=row)

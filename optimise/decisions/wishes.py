@@ -149,7 +149,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class ObjectiveOutcome:
     """One objective of the design that answers a wish.
 
     objective: the objective. quantity: its quantity. kind: kind of the wish. wished, reached, before: desired or
@@ -235,7 +235,7 @@ class Wished:
     row: int | None
     wishes: tuple[Wish, ...]
     value: float
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[ObjectiveOutcome, ...]
     message: str = ""
 
     def __len__(self) -> int:
@@ -273,13 +273,13 @@ class Wished:
 
 def outcomes_of(
     front: ParetoFront, wishes: Sequence[Wish], aims: Sequence[float | None], row: int | None, found: ParetoFront
-) -> tuple[Outcome, ...]:
+) -> tuple[ObjectiveOutcome, ...]:
     """Return the outcome for each objective.
 
     aims: desired values as minimised, SI. found: the design, as a separate front.
     """
     return tuple(
-        Outcome(
+        ObjectiveOutcome(
             objective=objective,
             quantity=(of := front.problem.quantity(objective.quantity)),
             kind=wishes[column].kind,

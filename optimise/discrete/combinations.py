@@ -17,12 +17,12 @@ from ..problem.constraint_violation import (
     constraints_with_floors,
     greatest_violation,
     minimised_objectives,
-    needs_cycle,
+    needs_computed_cycle,
     rotates_beyond_rounding,
 )
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Range
-from ..problem.robust_problem import asks_robust
+from ..problem.robust_problem import has_robust_requirements
 
 _BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations to judge between two progress reports
 
@@ -63,18 +63,18 @@ class Axes:
         return all(values is not None for values in self.values)
 
     @property
-    def count(self) -> int:
+    def combination_count(self) -> int:
         """Number of combinations."""
         return math.prod(len(values) for values in self.values if values is not None)
 
-    def designs(self, begin: int, end: int) -> Array:
+    def combinations_between(self, begin: int, end: int) -> Array:
         """Return combinations (n, 3 + v) in order, with the last number changing fastest.
 
         NaN where a number is free.
         """
-        return self.designs_of_numbers(np.arange(begin, min(end, math.prod(self._sizes))))
+        return self.combinations_at_indices(np.arange(begin, min(end, math.prod(self._sizes))))
 
-    def designs_of_numbers(self, numbers: IntArray) -> Array:
+    def combinations_at_indices(self, numbers: IntArray) -> Array:
         """Return combinations (n, 3 + v) by their indices."""
         places = np.unravel_index(numbers, self._sizes)
         columns = [
@@ -83,25 +83,25 @@ class Axes:
         ]
         return np.stack(columns, axis=1)
 
-    def neighbour_numbers(self, designs: Array) -> IntArray:
+    def indices_of_neighbours(self, designs: Array) -> IntArray:
         """Return the indices (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
         They include the design itself, which also replaces neighbours beyond the ends.
         """
-        places = np.stack(self._places(designs), axis=1)
+        places = np.stack(self._value_indices(designs), axis=1)
         ways = np.array(list(itertools.product(*((-1, 0, 1) if size > 1 else (0,) for size in self._sizes))))
         neighbours_at = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
         return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(neighbours_at, 2, 0)), self._sizes), np.int64)
 
-    def combination_numbers(self, designs: Array) -> IntArray:
+    def indices_of_combinations(self, designs: Array) -> IntArray:
         """Return the index of each combination (n, 3 + v), as `designs` counts them."""
-        return np.asarray(np.ravel_multi_index(tuple(self._places(designs)), self._sizes), np.int64)
+        return np.asarray(np.ravel_multi_index(tuple(self._value_indices(designs)), self._sizes), np.int64)
 
     @property
     def _sizes(self) -> tuple[int, ...]:
         return tuple(1 if values is None else len(values) for values in self.values)
 
-    def _places(self, designs: Array) -> list[IntArray]:
+    def _value_indices(self, designs: Array) -> list[IntArray]:
         return [
             np.zeros(len(designs), np.int64) if values is None else np.searchsorted(values, column)
             for values, column in zip(self.values, designs.T, strict=True)
@@ -141,7 +141,7 @@ class FeasibleDesigns:
             nearer.missed,
         )
 
-    def best(self) -> FeasibleDesigns:
+    def nondominated(self) -> FeasibleDesigns:
         """Return only the combinations that no other dominates, because millions of them would take gigabytes."""
         rows = nondominated(self.values)
         return replace(self, dimensions=self.dimensions[rows], values=self.values[rows])
@@ -156,14 +156,14 @@ def best_of_all_combinations(
     no objectives.
     """
     judged = FeasibleDesigns.empty(axes.part)
-    step = _ROBUST_BATCH if asks_robust(axes.part) and not dimensions_only else _BATCH
-    for begin in range(0, axes.count, step):
-        report(begin, axes.count)
+    step = _ROBUST_BATCH if has_robust_requirements(axes.part) and not dimensions_only else _BATCH
+    for begin in range(0, axes.combination_count, step):
+        report(begin, axes.combination_count)
         batch = designs_meeting_requirements(
-            axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only
+            axes.part, axes.combinations_between(begin, begin + step), dimensions_only=dimensions_only
         )
         judged = judged.merge(batch)
-        judged = judged.best() if len(judged.values) > _HELD else judged
+        judged = judged.nondominated() if len(judged.values) > _HELD else judged
     return judged
 
 
@@ -171,7 +171,7 @@ def designs_meeting_requirements(part: Problem, designs: Array, *, dimensions_on
     """Return the designs (n, 3 + v) that meet every requirement, with their objectives."""
     turning = designs[rotates_beyond_rounding(designs)]
     constraints = constraints_with_floors(part)
-    slow = [item for item in constraints if needs_cycle(part.quantity(item.quantity))]
+    slow = [item for item in constraints if needs_computed_cycle(part.quantity(item.quantity))]
     worst = greatest_violation(part, turning, [item for item in constraints if item not in slow])
     rows = np.flatnonzero(worst <= FEASIBLE)
     if slow and not dimensions_only:
@@ -219,17 +219,17 @@ def best_near_designs(
     best so far, until none are left or `limit` combinations are judged.
     """
     best, judged_numbers = FeasibleDesigns.empty(axes.part), np.zeros(0, np.int64)
-    fresh = np.unique(axes.combination_numbers(combinations_around(axes, designs, window)))
+    fresh = np.unique(axes.indices_of_combinations(combinations_around(axes, designs, window)))
     while len(fresh):
         for begin in range(0, len(fresh), _BATCH):
             report(len(judged_numbers) + begin, limit)
-            batch = designs_meeting_requirements(axes.part, axes.designs_of_numbers(fresh[begin : begin + _BATCH]))
-            best = best.merge(batch.best()).best()
+            batch = designs_meeting_requirements(axes.part, axes.combinations_at_indices(fresh[begin : begin + _BATCH]))
+            best = best.merge(batch.nondominated()).nondominated()
         judged_numbers = np.union1d(judged_numbers, fresh)
         fresh = np.zeros(0, np.int64)
         for begin in range(0, len(best.dimensions), _EXPANDED):
             report(len(judged_numbers), limit)
-            next_numbers = axes.neighbour_numbers(best.dimensions[begin : begin + _EXPANDED])
+            next_numbers = axes.indices_of_neighbours(best.dimensions[begin : begin + _EXPANDED])
             fresh = np.union1d(fresh, np.setdiff1d(next_numbers, judged_numbers))
         fresh = fresh[: max(0, limit - len(judged_numbers))]
     return best, judged_numbers
@@ -238,7 +238,7 @@ def best_near_designs(
 def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: IntArray) -> Mask:
     """Return a mask of combinations (n, 3 + v) whose neighbours are all among the judged indices."""
     return np.array(
-        [bool(np.isin(axes.neighbour_numbers(row[None]), judged_numbers).all()) for row in designs], np.bool_
+        [bool(np.isin(axes.indices_of_neighbours(row[None]), judged_numbers).all()) for row in designs], np.bool_
     )
 
 

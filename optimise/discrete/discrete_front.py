@@ -12,14 +12,14 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array, IntArray
-from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_design_numbers
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
-from ..front.hypervolume import ReportProgress, choose_designs
+from ..front.hypervolume import ReportProgress, choose_designs_by_hypervolume
 from ..front.progress import DiscreteSearch
 from ..front.rounded_design import drop_conversion_rounding
 from ..problem.problem import Problem
-from ..problem.robust_problem import asks_robust
+from ..problem.robust_problem import has_robust_requirements
 from ..problem.table_columns import STATUS
 from .combinations import (
     Axes,
@@ -52,8 +52,8 @@ def discrete_front(
     between steps.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
-    is_complete, count = all(axis.has_no_free_number for axis in axes), sum(axis.count for axis in axes)
-    limit = (_MOST_ROBUST if asks_robust(problem) else MOST) if is_complete else SOLVED
+    is_complete, count = all(axis.has_no_free_number for axis in axes), sum(axis.combination_count for axis in axes)
+    limit = (_MOST_ROBUST if has_robust_requirements(problem) else MOST) if is_complete else SOLVED
     exact = count <= limit
     judged: FeasibleDesigns | None = None
     chosen: Chosen = []
@@ -70,7 +70,7 @@ def discrete_front(
     if not is_complete:
         for index, axis in enumerate(axes):
             rows = (
-                axis.designs(0, axis.count)
+                axis.combinations_between(0, axis.combination_count)
                 if exact
                 else combinations_around(axis, _designs_of_variant(continuous, index), SOLVED)
             )
@@ -79,7 +79,7 @@ def discrete_front(
         for index, axis in enumerate(axes):
             rows_of_axis = [row for owner, row in chosen if owner == index]
             judged_numbers.append(
-                axis.combination_numbers(np.array(rows_of_axis)) if rows_of_axis else np.zeros(0, np.int64)
+                axis.indices_of_combinations(np.array(rows_of_axis)) if rows_of_axis else np.zeros(0, np.int64)
             )
     elif not exact:
         share, window = limit // len(axes), min(limit, _WINDOW) // len(axes)
@@ -137,7 +137,7 @@ def _designs_to_deliver(
     else:
         rows = rows[_distinct_rows(values[rows])]
         best = tuple(dict.fromkeys(np.argmin(values[rows], axis=0).tolist()))
-        rows = rows[choose_designs(values[rows], problem.settings.designs, always=best)]
+        rows = rows[choose_designs_by_hypervolume(values[rows], problem.settings.designs, always=best)]
     return [(int(owner[row]), together.dimensions[row]) for row in rows], together
 
 
@@ -171,7 +171,7 @@ def _front_of_problem(
 ) -> ParetoFront:
     """Return a front of combinations as a front of the original problem."""
     columns = dict(front.columns)
-    for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
+    for place, (name, (column, unit)) in enumerate(columns_of_design_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):
             displayed = front.dimensions[:, place] * unit.factor
             columns[column] = np.array([drop_conversion_rounding(value) for value in displayed.tolist()])

@@ -7,14 +7,14 @@ import numpy as np
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import count_with_noun
-from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_design_numbers
 from ..front.front import ParetoFront
 from ..problem.constraint_violation import constraints_with_floors, relative_violation
 from ..problem.problem import Problem
 from .combinations import Axes, FeasibleDesigns, best_of_all_combinations
 
 
-def rules_text(problem: Problem) -> str:
+def choices_text(problem: Problem) -> str:
     """Describe the choices with the number of their options, and the discrete numbers with their possible values."""
     options = [len({variant.labels[place] for variant in problem.variants}) for place in range(len(problem.choices))]
     choices = [
@@ -27,7 +27,7 @@ def result_message(front: ParetoFront) -> str:
     """Describe how many designs and combinations there are, and the best values with continuous numbers."""
     summary, problem = front.discrete, front.problem
     assert summary is not None
-    rules = rules_text(problem)
+    rules = choices_text(problem)
     if not len(front):
         return f"no design among {_count_combinations(summary.judged)} of {rules} meets every requirement"
     count = count_with_noun(len(front), "design")
@@ -57,7 +57,7 @@ def result_message(front: ParetoFront) -> str:
 
 def failure_message(problem: Problem, judged: FeasibleDesigns) -> str:
     """Return the message that no combination is feasible, with the deviations of the nearest one and a remedy."""
-    rules = rules_text(problem)
+    rules = choices_text(problem)
     subject = (
         f"none of {_count_combinations(judged.judged)} of {rules}"
         if judged.judged != 1
@@ -66,7 +66,7 @@ def failure_message(problem: Problem, judged: FeasibleDesigns) -> str:
     if judged.nearest is None:
         return f"{subject} rotates fully and has all required quantities; give smaller steps or wider ranges"
     listed_names = {*DIMENSIONS, *(item.name for item in problem.discrete)}
-    columns = columns_of_numbers(judged.part.mechanism.varying).items()
+    columns = columns_of_design_numbers(judged.part.mechanism.varying).items()
     sizes = ", ".join(
         f"{name} {value * unit.factor:.6g} {column.rpartition('_')[2]}"
         for (name, (column, unit)), value in zip(columns, judged.nearest.tolist(), strict=True)
@@ -98,7 +98,7 @@ MOST = 200_000
 """Maximum number of combinations to check."""
 
 
-def require_meetable(problem: Problem) -> None:
+def require_meetable_requirements(problem: Problem) -> None:
     """Raise InfeasibleError, naming the nearest, if no combination of three discrete dimensions meets the requirements.
 
     Checks only requirements that need no cycle, and at most `MOST` combinations; the search handles the rest.
@@ -106,7 +106,7 @@ def require_meetable(problem: Problem) -> None:
     if not problem.discrete:
         return
     axes = [_dimension_axes(Axes.of_problem(part)) for part in problem.parts()]
-    if not all(axis.has_no_free_number for axis in axes) or sum(axis.count for axis in axes) > MOST:
+    if not all(axis.has_no_free_number for axis in axes) or sum(axis.combination_count for axis in axes) > MOST:
         return
     judged = FeasibleDesigns.empty(axes[0].part)
     for axis in axes:

@@ -113,10 +113,10 @@ class Processes:
                 future.cancel()
             if wait([future for future in running if future.running()], timeout=interruption_grace_time()).not_done:
                 record_killed_call()
-                self._abandon()
+                self._kill_processes()
             raise
 
-    def _abandon(self) -> None:
+    def _kill_processes(self) -> None:
         """Kill processes whose work is no longer needed and may never end."""
         pool, self._pool = self._pool, None
         if pool is not None:

@@ -6,7 +6,7 @@ from functools import partial
 from ...model.arrays import Array
 from ...model.cycle.stroke_times import massless_machine
 from ..engine.engine import Engine
-from ..methods.auto.auto import AUTO, search_with
+from ..methods.auto.auto import AUTO, search_front_by_method
 from ..problem.problem import Problem, Settings, Variant
 from ..problem.requirements import Constraint, Objective, Sense
 from ..search.checkpoints import Checkpoints
@@ -20,7 +20,7 @@ from ..search.sample_and_zoom import (
     Callback,
     Run,
     descents_stay_infeasible,
-    explore,
+    sample_and_zoom,
     samples_per_branch,
 )
 from ..search.sampling import first_samples
@@ -56,7 +56,7 @@ def find_best_design(
     ]
     run = Run(problem, 1, report, checkpoints or Checkpoints(), stages=report)
     light = replace(problem, settings=replace(problem.settings, samples=problem.settings.samples or _FEW))
-    front = search_with(replace(AUTO, search=partial(_search_in_stages, problem)), light, combined, run)
+    front = search_front_by_method(replace(AUTO, search=partial(_search_in_stages, problem)), light, combined, run)
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
@@ -81,7 +81,7 @@ def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator]
         if found >= ENOUGH or (not found and descents_stay_infeasible(light, evaluators, BANDS[-2])):
             run.report_round("sampling", evaluators, archive)
             return archive
-    return explore(full, evaluators, run)
+    return sample_and_zoom(full, evaluators, run)
 
 
 def find_best_dimensions(problem: Problem) -> Best | None:

@@ -12,7 +12,7 @@ from ...model.swing.closure import closes_over_swing, swings_without_dead_point
 from ...model.swing.end_angles import swing_start_column
 from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import can_swing_despite_friction
-from ...objectives.tables.evaluate_quantities import can_move
+from ...objectives.tables.evaluate_quantities import designs_that_can_move
 from ..problem.problem import Problem
 from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.sampling import first_samples
@@ -33,14 +33,14 @@ def no_swing_reason(problem: Problem) -> str:
     motion = problem.motion
     assert motion is not None
     if motion.of_lever:
-        return _unswung_lever(problem, motion)
+        return _no_lever_swing_reason(problem, motion)
     closing = passing = 0
     stuck: list[tuple[Mechanism, Array]] = []
     for index, branch in enumerate(elimination_branches(problem)):
         machine, designs = problem.part(branch.variant).mechanism, _sample_designs(problem, branch, index)
         closing += int(closes_over_swing(machine, motion, designs).sum())
         passing += int(swings_without_dead_point(machine, motion, designs).sum())
-        able = designs[can_move(machine, motion, designs)]
+        able = designs[designs_that_can_move(machine, motion, designs)]
         if can_swing_despite_friction(machine, motion, able).any():
             return ""
         stuck.append((machine, able))
@@ -76,15 +76,15 @@ def no_swing_reason(problem: Problem) -> str:
 
 def _sample_designs(problem: Problem, branch: EliminationBranch, index: int) -> Array:
     """Return designs (n, 3 + k) of a branch, whatever they can do."""
-    designs = branch.dimensions(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
+    designs = branch.designs_at_points(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
     return np.asarray(designs[np.isfinite(designs).all(axis=1)])
 
 
-def _unswung_lever(problem: Problem, motion: Swing) -> str:
+def _no_lever_swing_reason(problem: Problem, motion: Swing) -> str:
     """Return the reason why no lever within the ranges makes the required swing; "" if one in a sample does."""
     for index, branch in enumerate(elimination_branches(problem)):
         machine = problem.part(branch.variant).mechanism
-        if can_move(machine, motion, _sample_designs(problem, branch, index)).any():
+        if designs_that_can_move(machine, motion, _sample_designs(problem, branch, index)).any():
             return ""
     if motion.of_full_turn:
         return (

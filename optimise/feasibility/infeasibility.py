@@ -64,7 +64,7 @@ def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
         found = []
         for index, evaluator in enumerate(evaluators):
             u = first_samples(_TRIED, evaluator.dimension, problem.settings.seed, 200 + index)
-            designs = evaluator.branch.dimensions(u[evaluator.can_evaluate(u)])
+            designs = evaluator.branch.designs_at_points(u[evaluator.can_evaluate(u)])
             found.append(evaluator.problem.quantity(name).evaluate(evaluator.problem.mechanism, designs).values)
         values = np.concatenate([np.zeros(0), *found])
         values = values[~np.isnan(values)]
@@ -167,11 +167,11 @@ def _least_violation(
         if not len(found):
             turned = u[evaluator.can_evaluate(u)][:_RANKED]
             blank = blank or (
-                valueless_quantity_text(evaluator.problem, branch.dimensions(turned)) if len(turned) else ""
+                valueless_quantity_text(evaluator.problem, branch.designs_at_points(turned)) if len(turned) else ""
             )
             continue
         turning = True
-        dimensions = branch.dimensions(found.u)
+        dimensions = branch.designs_at_points(found.u)
         feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:

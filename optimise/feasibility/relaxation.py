@@ -81,7 +81,7 @@ class Relaxation:
         return round_to_safe_side(self.reachable, "down" if self.reachable < self.requested else "up")
 
     @property
-    def number(self) -> float:
+    def reachable_number(self) -> float:
         """The reachable value as a number, as shown."""
         return float(self.rounded_value)
 
@@ -145,7 +145,7 @@ def relaxations(
             yield reached.design
             continue
         if sense == "target":
-            rounded = item.number / problem.quantity(constraint.quantity).unit.factor
+            rounded = item.reachable_number / problem.quantity(constraint.quantity).unit.factor
             again = best(with_single_objective(free, constraint.quantity, "target", rounded))
             alone = (
                 again is None or relaxation_of_missed_bound(problem, constraint, word, rounded, again.value) is not None

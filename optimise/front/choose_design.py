@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
-from ...model.kernel.batches import in_chunks
+from ...model.kernel.batches import run_in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
 from ...model.machine.loads.load import require_word
 from .saved_front import column_ranges
@@ -31,7 +31,7 @@ def nearest_neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
     distance = np.full((len(points), count), np.inf)
     nearest = np.zeros(len(points) * count, dtype=np.int64)
     ordered = points[order]
-    in_chunks(len(points), lambda begin, end: _search_neighbours(ordered, begin, end, distance, nearest))
+    run_in_chunks(len(points), lambda begin, end: _search_neighbours(ordered, begin, end, distance, nearest))
     rows = np.empty_like(order)
     rows[order] = np.arange(len(order))
     return distance[rows], order[nearest.reshape(-1, count)[rows]]
@@ -102,13 +102,13 @@ def scale_by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
     return np.where(np.isfinite(values), scaled, values)
 
 
-def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
+def knee_row(values: Array, *, size: ArrayLike = 0.0) -> int:
     """Return the row nearest to the ideal point, with every objective scaled by its range over the designs."""
     distances = np.linalg.norm(scale_by_range(values, size=size), axis=1)
     return int(np.flatnonzero(distances <= distances.min() + _TIE)[0])
 
 
-def closeness(
+def topsis_closeness(
     values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
 ) -> Array:
     """Return the relative closeness (n,) of designs to the ideal, 0 to 1, greatest best (TOPSIS).
@@ -145,9 +145,9 @@ def closeness(
 def topsis(
     values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
 ) -> int:
-    """Return the row with the greatest `closeness`; ties go to the better in the other objectives."""
-    scores = closeness(values, weights, normalisation=normalisation, size=size)
-    return _least_total(values, np.flatnonzero(scores >= scores.max() - _TIE), size)
+    """Return the row with the greatest `topsis_closeness`; ties go to the better in the other objectives."""
+    scores = topsis_closeness(values, weights, normalisation=normalisation, size=size)
+    return _row_of_least_total(values, np.flatnonzero(scores >= scores.max() - _TIE), size)
 
 
 def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
@@ -170,10 +170,10 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
         if span[column] > 0.0:
             values_left = scaled[rows, column]
             rows = rows[values_left <= values_left.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
-    return _least_total(values, rows, size)
+    return _row_of_least_total(values, rows, size)
 
 
-def _least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
+def _row_of_least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
     totals = scale_by_range(values, size=size)[rows].sum(axis=1)
     return int(rows[np.flatnonzero(totals <= totals.min() + _TIE)[0]])
 

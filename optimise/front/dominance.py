@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask
-from ...model.kernel.batches import in_chunks
+from ...model.kernel.batches import run_in_chunks
 from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
 
 _WORD = 63  # designs per integer word of mask bits, whose sign bit is unused
@@ -43,7 +43,9 @@ def nondominated(values: Array) -> IntArray:
     _mark_prefixes(ordered, ranked, bits, upto)
     by_word = np.pad(ordered, ((0, 0), (0, words * _WORD - count))).reshape(-1, words, _WORD)
     undominated = np.ones(count, np.bool_)
-    in_chunks(count, lambda begin, end: _mark_undominated(by_word, bits, upto, begin, end, undominated), size=_CHUNK)
+    run_in_chunks(
+        count, lambda begin, end: _mark_undominated(by_word, bits, upto, begin, end, undominated), size=_CHUNK
+    )
     return np.sort(order[undominated])
 
 
@@ -122,7 +124,7 @@ def dominating(points: Array, rivals: Array, *, clearly: float, slightly: float 
     """
     dominates = np.zeros(len(points), dtype=bool)
     points, rivals = np.ascontiguousarray(points), np.ascontiguousarray(rivals)
-    in_chunks(
+    run_in_chunks(
         len(points),
         lambda begin, end: _mark_dominating(points[begin:end], rivals, clearly, slightly, dominates[begin:end]),
     )

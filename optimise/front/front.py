@@ -23,17 +23,17 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.tables.evaluate_quantities import violations
+from ...objectives.tables.evaluate_quantities import violations_of_allowables
 from ..problem.problem import Problem
 from ..problem.question_registry import question_about, subject_of_question
 from ..problem.requirements import Objective
 from ..problem.table_columns import sufficient_option_field
-from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
-from .front_picture import figure, svg
+from .choose_design import Normalisation, Priority, knee_row, lexicographic, scale_by_range, topsis
+from .front_picture import scatter_figure, scatter_svg
 from .nonnegative_least_squares import nonnegative_least_squares
 from .progress import DiscreteSearch, Progress
 from .rounded_design import Rounded
-from .rounding import doubtful_misses, ranges_or_sizes, round_design
+from .rounding import ranges_or_sizes, readings_of_unitless_misses, round_design
 from .rounding_search import Stage
 from .saved_front import column_ranges, front_fields, write_front
 from .stationarity import STATIONARY, optimality_multipliers
@@ -104,13 +104,13 @@ class ParetoFront:
         columns = [quantity.field for quantity in self._quantities]
         sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.columns]
         table = self.designs[list(dict.fromkeys([*columns, *sizes]))].to_html(max_rows=8, float_format="{:.5g}".format)
-        return f"<div><p>{escape(repr(self))}</p>{svg(self._objective_columns(), self._labels())}{table}</div>"
+        return f"<div><p>{escape(repr(self))}</p>{scatter_svg(self._objective_columns(), self._labels())}{table}</div>"
 
     def plot(self) -> Figure:
         """Return a matplotlib figure of every objective against the first. Raises `InputError` for an empty front."""
         if not len(self):
             raise InputError(f"a figure needs designs; this front is empty: {self.message}")
-        return figure(self._objective_columns(), self._labels(), self.problem.name)
+        return scatter_figure(self._objective_columns(), self._labels(), self.problem.name)
 
     def _labels(self) -> list[str]:
         return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in self._quantities]
@@ -190,7 +190,7 @@ class ParetoFront:
                     else None
                 )
 
-            for name, excess in violations(self.problem.part(variant).mechanism, values_of).items():
+            for name, excess in violations_of_allowables(self.problem.part(variant).mechanism, values_of).items():
                 excess_by_name.setdefault(name, np.zeros(len(self)))[rows] = excess
         return excess_by_name
 
@@ -205,7 +205,7 @@ class ParetoFront:
 
     def knee(self) -> int:
         """Return the row nearest to the ideal point, with every objective scaled by its range over the front."""
-        return knee(self.values, size=self._objective_targets)
+        return knee_row(self.values, size=self._objective_targets)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
         """Return the row chosen by weights for the objectives, see `choose_design.closeness`.
@@ -260,7 +260,7 @@ class ParetoFront:
             raise InputError(f"a pick needs a front with designs; this one is empty: {self.message}")
         keep, ranges = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
-            least, greatest = bounds_of_name(column, ends)
+            least, greatest = least_and_greatest_of_bounds(column, ends)
             values = self.columns[column] if column in self.columns else self._evaluate(column)
             if values.dtype.kind not in "fiu":
                 raise InputError(f"bounds may only be on numbers; got {column}, a column of words; see front.designs")
@@ -307,7 +307,7 @@ class ParetoFront:
         progress: called several times a second; an exception from it ends the search. See `Rounded` and
         `rounding.rounding`. Warns if an allowed deviation without a unit is more than a tenth of the required value.
         """
-        for doubt in doubtful_misses(self.part(row), allow or {}):
+        for doubt in readings_of_unitless_misses(self.part(row), allow or {}):
             warn_user(f"allowed deviations are in SI: {doubt}")
         for stage in self.rounding(row, to, count=count, allow=allow):
             if isinstance(stage, Rounded):
@@ -457,7 +457,7 @@ def _losses_of_cheapest_gain(slopes: Array, owner: Array, active: Array, b: int,
     return solution[k : k + m]
 
 
-def bounds_of_name(name: str, ends: object) -> tuple[float | None, float | None]:
+def least_and_greatest_of_bounds(name: str, ends: object) -> tuple[float | None, float | None]:
     """Return the least and greatest value for a name, None if unbounded.
 
     Raises `InputError` unless `ends` is such a pair.

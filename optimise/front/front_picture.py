@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _WIDTH, _HEIGHT, _MARGIN = 320.0, 200.0, 30.0  # px in the SVG
 
 
-def svg(values: Array, labels: Sequence[str]) -> str:
+def scatter_svg(values: Array, labels: Sequence[str]) -> str:
     """Return an SVG scatter plot of the first two columns, or of a single column against its row number."""
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
@@ -41,7 +41,7 @@ def svg(values: Array, labels: Sequence[str]) -> str:
     )
 
 
-def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
+def scatter_figure(values: Array, labels: Sequence[str], title: str) -> Figure:
     """Return a matplotlib figure of every objective against the first; a single one is plotted in row order.
 
     values: (n, m), in display units.

@@ -112,7 +112,7 @@ class GainBounds:
         return np.asarray(self.boxes - union + _ROUNDING)
 
 
-def choose_designs(
+def choose_designs_by_hypervolume(
     values: Array, count: int, *, always: tuple[int, ...] = (), report: ReportProgress = ignore_progress
 ) -> IntArray:
     """Return `count` ascending indices of non-dominated designs, `always` included, selected by hypervolume.

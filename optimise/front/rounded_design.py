@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...objectives.kinds import System, count_with_noun, metric_unit_in
-from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_design_numbers
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -144,7 +144,7 @@ class Rounded:
                 Miss(
                     quantity=constraint.quantity,
                     title=quantity.title,
-                    kind=quantity.kind.plain,
+                    kind=quantity.kind.name_without_article,
                     amount=float(-slack * quantity.unit.factor),
                     unit=quantity.unit.symbol,
                     side="below" if constraint.lower is not None and value < constraint.lower else "above",
@@ -173,7 +173,7 @@ class Rounded:
     @property
     def names(self) -> dict[str, tuple[str, float]]:
         """The column for each number of a design, with the factor from SI to its unit."""
-        columns = columns_of_numbers(self.problem.mechanism.varying)
+        columns = columns_of_design_numbers(self.problem.mechanism.varying)
         return {name: (column, unit.factor) for name, (column, unit) in columns.items()}
 
     @cached_property
@@ -196,7 +196,7 @@ class Rounded:
                 percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
             table[quantity.field] = now * quantity.unit.factor
             table[f"change_{quantity.field}"] = change * quantity.unit.factor
-            table[f"change_{quantity.stem}_percent"] = percent
+            table[f"change_{quantity.column_stem}_percent"] = percent
         table["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
         for place, constraint in enumerate(self.constraints):
             quantity = self.problem.quantity(constraint.quantity)

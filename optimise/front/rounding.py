@@ -14,7 +14,7 @@ from numbers import Integral, Real
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.errors import InputError, reading_in_both_units
+from ...model.errors import InputError, number_in_si_and_usual_unit
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
@@ -23,7 +23,7 @@ from ..problem.constraint_violation import FEASIBLE, constraints_with_floors
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from .rounded_design import Rounded
-from .rounding_search import RoundingSearch, Steps, number_text
+from .rounding_search import RoundingSearch, Steps, design_number_text
 from .saved_front import column_ranges
 
 _SMALLEST = 1e-9  # relative to the greatest number in a range: a smaller step is rounding
@@ -118,7 +118,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
     return np.where(span > 0.0, span, np.where(sizes_of_reference > 0.0, sizes_of_reference, 1.0))
 
 
-def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
+def readings_of_unitless_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
     """Return both readings of allowed deviations without a unit that are large compared with the required value."""
     plain_misses, doubts = (
         {name: value for name, value in _require_misses_by_quantity(allow).items() if not isinstance(value, str)},
@@ -129,7 +129,7 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
         quantity = part.quantity(name)
         if quantity.unit.symbol != quantity.kind.unit and value > _LARGE * bounds[name]:
             doubts.append(
-                reading_in_both_units(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor)
+                number_in_si_and_usual_unit(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor)
             )
     return doubts
 
@@ -138,7 +138,9 @@ def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[st
     """Return the allowed deviations of requirements, SI, by quantity. A required slow stroke cannot be missed."""
     constraints = {item.quantity: item for item in constraints_with_floors(replace(part, slow_stroke=None))}
     quantities = {name: part.quantity(name) for name in constraints}
-    names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
+    names = {
+        alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.column_stem, name)
+    }
     allowed: dict[str, float] = {}
     for name, value in _require_misses_by_quantity(misses).items():
         if name not in names:
@@ -193,7 +195,9 @@ def _rounding_steps(to: float | Mapping[str, float], part: Problem) -> dict[str,
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
         if step < _SMALLEST * size:
-            step_text, least, greatest = (number_text(part, name, value) for value in (step, _SMALLEST * size, size))
+            step_text, least, greatest = (
+                design_number_text(part, name, value) for value in (step, _SMALLEST * size, size)
+            )
             raise InputError(
                 f"the step of {name} must be at least {least}, {_SMALLEST:g} of {greatest}, the greatest in its "
                 f"range; got {step_text}; use a larger step"

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
-from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_design_numbers
 from ...objectives.tables.evaluate_quantities import can_run_despite_friction
 from ..problem.constraint_violation import (
     FEASIBLE,
@@ -19,12 +19,12 @@ from ..problem.constraint_violation import (
     greatest_violation,
     minimised_objectives,
     minimised_values,
-    needs_cycle,
+    needs_computed_cycle,
     rotates_beyond_rounding,
 )
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
-from ..problem.robust_problem import asks_robust
+from ..problem.robust_problem import has_robust_requirements
 from .dominance import nondominated
 
 REACHES = (16, 32)
@@ -52,9 +52,9 @@ Steps = Generator[Stage, None, T]
 """A search that yields its progress and returns its result; closing it ends the search."""
 
 
-def number_text(part: Problem, name: str, value: float) -> str:
+def design_number_text(part: Problem, name: str, value: float) -> str:
     """Return the value, SI, of a number in a problem's designs as text in its display unit."""
-    unit = columns_of_numbers(part.mechanism.varying)[name][1]
+    unit = columns_of_design_numbers(part.mechanism.varying)[name][1]
     return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
 
 
@@ -73,14 +73,14 @@ class RoundingSearch:
         self.part, self.design, self.span, self.steps, self.ranges = part, design, span, steps, part.ranges
         self.allowed = allowed
         self.constraints = constraints_with_floors(part)
-        self.quick = [item for item in self.constraints if not needs_cycle(part.quantity(item.quantity))]
+        self.quick = [item for item in self.constraints if not needs_computed_cycle(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
-        self.most = _MOST_ROBUST if asks_robust(part) else _MOST
-        self.design_objectives = minimised_objectives(part, self.values(design[None]))[0]
+        self.most = _MOST_ROBUST if has_robust_requirements(part) else _MOST
+        self.design_objectives = minimised_objectives(part, self.objectives_of_designs(design[None]))[0]
         self.window, self.judged, self.feasible_count = 0, 0, 0
         self._possible_values(1)
 
-    def best(self, count: int) -> Steps[Array]:
+    def best_designs(self, count: int) -> Steps[Array]:
         """Return the best designs (n, 3 + v) from the smallest window with feasible ones; otherwise the nearest.
 
         Yields a `Stage` before every block of designs.
@@ -96,7 +96,9 @@ class RoundingSearch:
             )
             misses[rows] = np.maximum(misses[rows], judged)
             feasible_rows = rows[misses[rows] <= FEASIBLE]
-            values = yield from self._in_blocks("ranking combinations", designs[feasible_rows], self.values)
+            values = yield from self._in_blocks(
+                "ranking combinations", designs[feasible_rows], self.objectives_of_designs
+            )
             has_values = ~np.isnan(values).any(axis=1)
             if has_values.any():
                 break
@@ -104,8 +106,8 @@ class RoundingSearch:
         self.judged, self.feasible_count = len(designs), int(has_values.sum())
         if not has_values.any():
             return (yield from self._nearest_by_miss(designs, misses, rows, count))
-        best = self._ranked(designs[feasible_rows[has_values]], values[has_values])[:count]
-        loss = float(self.losses(self.values(best[:1])).max())
+        best = self._rank_designs(designs[feasible_rows[has_values]], values[has_values])[:count]
+        loss = float(self.losses_of_objectives(self.objectives_of_designs(best[:1])).max())
         if len(best) == count or loss <= _ACCEPTED_LOSS:
             return best
         misses[feasible_rows] = np.inf
@@ -116,11 +118,11 @@ class RoundingSearch:
         )
         return np.concatenate([best, missing])
 
-    def values(self, designs: Array) -> Array:
+    def objectives_of_designs(self, designs: Array) -> Array:
         """Return the objectives (n, m) of designs, SI."""
         return self.part.evaluate(designs) if len(designs) else np.zeros((0, len(self.part.objectives)))
 
-    def losses(self, values: Array) -> Array:
+    def losses_of_objectives(self, values: Array) -> Array:
         """Return the losses of objectives (n, m) compared with the design's, in units of `span`."""
         now = minimised_objectives(self.part, values)
         with np.errstate(invalid="ignore"):
@@ -153,10 +155,10 @@ class RoundingSearch:
         ladders = [[float(value)] for value in self.design]
         for place, name in enumerate(self.ranges):
             if name in self.steps:
-                ladders[place] = self._multiples(name, float(self.design[place]), window)
+                ladders[place] = self._multiples_near_value(name, float(self.design[place]), window)
         return ladders
 
-    def _multiples(self, name: str, value: float, window: int) -> list[float]:
+    def _multiples_near_value(self, name: str, value: float, window: int) -> list[float]:
         step, lower, upper = self.steps[name], self.ranges[name].lower, self.ranges[name].upper
         place = value / step
         is_multiple = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
@@ -168,10 +170,12 @@ class RoundingSearch:
         multiples = [x for x in every if lower - slack <= x <= upper + slack and (side is None or side * x > 0.0)]
         if not multiples and window == 1:
             raise InputError(
-                f"the step of {name} must have a multiple within its range, {number_text(self.part, name, lower)} "
-                f"to {number_text(self.part, name, upper)}"
+                f"the step of {name} must have a multiple within its range, "
+                f"{design_number_text(self.part, name, lower)} "
+                f"to {design_number_text(self.part, name, upper)}"
                 f"{'' if side is None else ', on the side that slow_stroke asks for'}; "
-                f"got {number_text(self.part, name, step)}; use a smaller step, or none, so that it stays unchanged"
+                f"got {design_number_text(self.part, name, step)}; use a smaller step, or none, so that it stays "
+                "unchanged"
             )
         return multiples
 
@@ -199,9 +203,9 @@ class RoundingSearch:
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
         return np.asarray((np.abs(designs - self.design) / steps).max(axis=1))
 
-    def _ranked(self, designs: Array, values: Array) -> Array:
+    def _rank_designs(self, designs: Array, values: Array) -> Array:
         """Return designs in order of greatest loss, then of total loss, then of distance in steps."""
-        losses = self.losses(values)
+        losses = self.losses_of_objectives(values)
         total = np.clip(losses, 0.0, None).sum(axis=1)
         order = np.lexsort((self._steps_away(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
         if losses.shape[1] == 1:  # if one dominates all others, the next best are of interest
@@ -232,7 +236,7 @@ class RoundingSearch:
             bar = np.round(misses[ahead[0]], _TIE) if len(ahead) else np.inf
             placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
             fresh = placed[np.isnan(losses[placed])]
-            losses[fresh] = self.losses(self.values(designs[fresh])).max(axis=1)
+            losses[fresh] = self.losses_of_objectives(self.objectives_of_designs(designs[fresh])).max(axis=1)
             placed = placed[
                 (losses[placed] <= max_loss) & (misses[placed] <= (_LITTLE if math.isfinite(max_loss) else np.inf))
             ]
@@ -247,7 +251,7 @@ class RoundingSearch:
         """Return the greatest loss (n,) over the objectives with closed forms."""
         losses = np.full(len(designs), -np.inf)
         for place, objective in enumerate(self.part.objectives):
-            if not needs_cycle(self.part.quantity(objective.quantity)):
+            if not needs_computed_cycle(self.part.quantity(objective.quantity)):
                 now = minimised_values(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
                 losses = np.fmax(losses, (now - self.design_objectives[place]) / self.span[place])
         return losses

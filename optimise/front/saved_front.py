@@ -71,7 +71,7 @@ def front_to_json(fields: Mapping[str, Any]) -> str:
         "goals": [[owner.tolist(), slopes.tolist()] for owner, slopes in fields["goals"]],
         "active": [edges.tolist() for edges in active],
     }
-    return json.dumps(_json_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
+    return json.dumps(_with_text_for_non_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
 
 
 def write_front(fields: Mapping[str, Any], file: Path) -> None:
@@ -165,14 +165,14 @@ def _array_of_rows(rows: list[Any], width: int) -> Array:
     return np.array(rows, dtype=np.float64).reshape(len(rows), width)
 
 
-def _json_finite(value: Any) -> Any:
+def _with_text_for_non_finite(value: Any) -> Any:
     """Return a value with text in place of numbers that JSON lacks."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):
-        return {key: _json_finite(item) for key, item in value.items()}
+        return {key: _with_text_for_non_finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_json_finite(item) for item in value]
+        return [_with_text_for_non_finite(item) for item in value]
     return value
 
 

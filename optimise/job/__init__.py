@@ -170,7 +170,7 @@ def parse_job(
         problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
         doubts += formula_bounds_without_unit(problem, data)
         sentences = [] if stated.choice else motor_torque_warnings(problem.mechanism, data)
-        warned = tuple(dict.fromkeys([*(item.warning for item in doubts if item.warning), *sentences]))
+        warned = tuple(dict.fromkeys([*(item.warning_text for item in doubts if item.warning_text), *sentences]))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = numbers_without_unit(job, data)
@@ -198,7 +198,9 @@ def _with_unit_warnings(sentence: str, doubts: Iterable[PlainNumbers], *, everyw
     """
     place = re.match(r"[a-z_][^:;=]*(?=: )", sentence)
     key = place[0] if place else ""
-    likely_causes = [item.warning for item in doubts if item.warning and (everywhere or not key or item.is_at_key(key))]
+    likely_causes = [
+        item.warning_text for item in doubts if item.warning_text and (everywhere or not key or item.is_at_key(key))
+    ]
     rest = sentence[len(key) :].removeprefix(": ")
     return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(likely_causes), rest))
 

@@ -133,8 +133,8 @@ def _read_catalogue(
     filled_columns = [column for column in map(partial(_validated_column, table), columns) if column is not None]
     places = [column.place for column in filled_columns if column.kind is not None or not column.is_amount]
     blank = [column.place for column in filled_columns if column.word is not None or column.is_amount]
-    digits = dict(zip(places, table.digits(places, missing=blank), strict=True))
-    cells_by_column = (digits.get(place) or table.texts(place) for place in range(len(table.heads)))
+    digits = dict(zip(places, table.number_texts(places, missing=blank), strict=True))
+    cells_by_column = (digits.get(place) or table.column_cells(place) for place in range(len(table.heads)))
     cells = [list(row) for row in zip(*cells_by_column, strict=True)]
     screening = screen_rows(filled_columns, cells, tables or {}, file_name)
     if len(screening.searched) > MOST_OPTIONS:
@@ -165,7 +165,7 @@ def _require_distinct_row_names(table: TableFile) -> None:
     if len(table) > MOST_ROWS:
         raise JobError(f"{table.name} must have at most {MOST_ROWS} rows; got more; keep those that you would buy")
     labels: dict[str, int] = {}
-    for number, label in zip(table.rows, table.texts(0), strict=True):
+    for number, label in zip(table.row_lines, table.column_cells(0), strict=True):
         row = f"{table.name}, row {number}"
         if not label or label.startswith(_FORMULA) or len(label) > _LONGEST or not label.isprintable():
             raise JobError(
@@ -181,13 +181,13 @@ def _require_distinct_row_names(table: TableFile) -> None:
 
 def _validated_column(table: TableFile, column: Column) -> Column | None:
     """Return a column that is stored as numbers or text; None if it is empty. Texts are checked."""
-    cells = table.texts(column.place)
+    cells = table.column_cells(column.place)
     filled = [cell for cell in cells if cell]
     if not column.is_amount or column.unit or not filled:
         return None if column.is_amount and not column.unit else column
     if are_numbers(filled) and not any(map(_ARTICLE.fullmatch, filled)):
         return column
-    for number, cell in zip(table.rows, cells, strict=True):
+    for number, cell in zip(table.row_lines, cells, strict=True):
         if cell.startswith("=") or len(cell) > _LONGEST_NOTE or not (cell.isprintable() or not cell):
             raise JobError(
                 f"{table.cell_name(number, column.place)}: must be a number, or a text of at most {_LONGEST_NOTE} "
@@ -223,11 +223,13 @@ def _option_of_row(columns: Sequence[Column], row: Sequence[str], *, searched: b
         if not cell:
             continue
         if column.word is not None:
-            option.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.value(cell)
+            option.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.job_value_of_cell(
+                cell
+            )
         elif not column.is_amount:
-            option.setdefault("values", {})[column.name] = column.value(cell)
+            option.setdefault("values", {})[column.name] = column.job_value_of_cell(cell)
         elif column.kind is not None:
-            option.setdefault("amounts", {})[column.name] = column.value(cell)
+            option.setdefault("amounts", {})[column.name] = column.job_value_of_cell(cell)
         else:
             option.setdefault("notes", {})[column.name] = cell
     return option if searched else option | {"searched": False}

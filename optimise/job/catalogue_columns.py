@@ -53,7 +53,7 @@ class Column:
     is_amount: bool = False
     added: bool = False
 
-    def value(self, cell: str) -> str | float:
+    def job_value_of_cell(self, cell: str) -> str | float:
         """Return a cell as a value for a job file."""
         return f"{cell} {self.unit}" if self.unit else float(cell)
 

@@ -232,7 +232,7 @@ def constraint_and_objective_tables(
     forms: dict[Kind, tuple[Any, Any]] = {}
     names = frozenset((*custom_facts, *named))
     product_facts = {
-        name: Stated(fact.title, fact.kind, fact.usual, "max" if fact.better == "low" else "min")
+        name: Stated(fact.title, fact.kind, fact.usual_value, "max" if fact.better == "low" else "min")
         for name, fact in FACTS.items()
     }
     for name, (title, kind, example, bound) in (product_facts | dict(custom_facts)).items():
@@ -259,7 +259,7 @@ def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, 
     names: names for formulas in bounds.
     """
     value, bound = Annotated[float, Physical(kind)], Annotated[Any, _BoundMarker(kind, names=names)]
-    name = kind.plain.title().replace(" ", "")
+    name = kind.name_without_article.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
     help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
     limits: Any = {word: (bound | None, optional_entry(text, *example)) for word, text in help_of.items()}
@@ -298,25 +298,25 @@ def constraints_of(
             continue
         stated_bounds = {word: value for word in WORDS if (value := getattr(bounds, word)) is not None}
         if all(isinstance(value, float) for value in stated_bounds.values()) and name in FACTS:
-            yield Constraint(quantity=name, **_ends_of_bounds(stated_bounds))
+            yield Constraint(quantity=name, **_lower_and_upper_of_bounds(stated_bounds))
         elif formulas is not None:
             yield from _bounds_of_formula(f"{key}{key_of_location([name])}", name, stated_bounds, formulas)
 
 
 def _bounds_of_formula(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
     """Yield the constraints on a formula, or on a quantity bounded by formulas; those on one quantity are merged."""
-    of = formulas.quantity(name, key)
+    of = formulas.quantity_of_text(name, key)
     merged_bounds: dict[str, dict[Word, float]] = {}
     for word, value in bounds.items():
-        bounded, bound = formulas.bound(of, value, f"{key}.{word}")
+        bounded, bound = formulas.quantity_and_bound(of, value, f"{key}.{word}")
         merged_bounds.setdefault(bounded.name, {})[word] = bound
     for quantity, ends in merged_bounds.items():
         if "min" in ends and "max" in ends and ends["min"] > ends["max"]:
             raise JobError(f"{key}: {_crossed_bounds_text(bounds)}")
-        yield Constraint(quantity=quantity, **_ends_of_bounds(ends))
+        yield Constraint(quantity=quantity, **_lower_and_upper_of_bounds(ends))
 
 
-def _ends_of_bounds(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
+def _lower_and_upper_of_bounds(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
     equals = bounds.get("equals")
     return {"lower": bounds.get("min", equals), "upper": bounds.get("max", equals)}
 
@@ -340,11 +340,11 @@ def objectives_of(part: ObjectivesPart, formulas: Formulas) -> Iterator[Objectiv
     """Return a job's objectives in the form that the problem uses. Raises JobError for an invalid formula."""
     for name, wish in _table_entries(part):
         key = f"objectives.{key_of_location([name])}"
-        of = formulas.quantity(name, key)
+        of = formulas.quantity_of_text(name, key)
         if isinstance(wish, Target):
             target = cast(Any, wish).target
             if isinstance(wish, FormulaTarget):
-                of, target = formulas.bound(of, target, f"{key}.target")
+                of, target = formulas.quantity_and_bound(of, target, f"{key}.target")
             yield Objective(quantity=of.name, sense="target", target=target)
         else:
             yield Objective(quantity=of.name, sense=wish)

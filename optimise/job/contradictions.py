@@ -14,7 +14,7 @@ from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.clearance import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.varying_numbers import number_at
+from ...model.machine.varying_numbers import number_at_path
 from ...objectives.bar_pieces import LINKS, NEAR
 from ...objectives.link_strength import LinkStress
 from ...objectives.proportions import STROKE, TIME_RATIO
@@ -85,7 +85,7 @@ def require_eyes_wider_than_pins(problem: Problem) -> None:
         return
     refused = []
     for part in problem.parts():
-        links = {link for item in stresses for link in item.bars(part.mechanism)}
+        links = {link for item in stresses for link in item.links_with_bars(part.mechanism)}
         reasons = [reason for link in sorted(links) for reason in _oversized_pin_messages(part.mechanism, link)]
         if not reasons:
             return
@@ -110,7 +110,7 @@ def _number_range(mechanism: Mechanism, path: str) -> tuple[float, ...]:
         for set_path, factor in item.sets:
             if set_path == path:
                 return factor * item.lower, factor * item.upper
-    value = number_at(mechanism.nominal, path)
+    value = number_at_path(mechanism.nominal, path)
     assert value is not None
     return (value,)
 
@@ -188,7 +188,7 @@ def _require_possible_value(problem: Problem, key: str, name: str, word: str, va
     value_text = f"got {word} {value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
     # A swing may exceed the domain that full rotation imposes.
     turning = problem.motion is None or isinstance(quantity, SwingQuantity)
-    if turning and quantity.domain is not None and quantity.domain.refuses(value, least=word == "min"):
+    if turning and quantity.domain is not None and quantity.domain.refuses_bound(value, least=word == "min"):
         raise JobError(f"{key}: {quantity.domain.rule}; {value_text}; {quantity.domain.remedy}")
     if not quantity.signed and value < 0.0:
         raise JobError(f"{key}: {name} is never negative; {value_text}; give its size")
@@ -255,7 +255,7 @@ def require_slow_stroke(problem: Problem) -> None:
         side = "above" if narrowed.offset.lower >= 0.0 else "below"
         alternative = f"or leave out constraints.slow_stroke, which keeps the offset {side} 0"
         raise InfeasibleError(f"{error}, {alternative}") from None
-    greatest = Box.from_problem(narrowed).possible(TIME_RATIO)[1]
+    greatest = Box.from_problem(narrowed).bounds_on_quantity(TIME_RATIO)[1]
     floor = TIME_RATIO.floor or 1.0
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)

@@ -112,8 +112,8 @@ def with_speed_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     )
     curve = drop_closing_point(_convert_time_to_turn_angle(curve) if curve.argument_head.kind is TIME else curve)
     require_point_count(len(curve.arguments), curve.name, 4)
-    angles, speeds = curve.texts()
-    profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.source(file)}
+    angles, speeds = curve.argument_and_value_texts()
+    profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.summary_text(file)}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
 
 

@@ -60,22 +60,22 @@ class Curve:
     notes: tuple[str, ...]
 
     @property
-    def full_turn(self) -> float:
+    def full_turn_in_angle_unit(self) -> float:
         """A full turn of the crank in the unit of its angle."""
         return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * value_of_one_si_unit_in(self.argument_head.unit))
 
     @property
     def turn_count(self) -> float:
         """Number of turns from the first to the last point."""
-        return float(self.arguments[-1] - self.arguments[0]) / self.full_turn
+        return float(self.arguments[-1] - self.arguments[0]) / self.full_turn_in_angle_unit
 
-    def texts(self) -> tuple[list[str], list[str]]:
+    def argument_and_value_texts(self) -> tuple[list[str], list[str]]:
         """Return arguments and values as a job has them."""
         columns = ((self.argument_head.unit, self.arguments), (self.value_head.unit, self.values))
         places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in columns)
         return places, values
 
-    def source(self, file: str) -> str:
+    def summary_text(self, file: str) -> str:
         """Return a summary of the content read from a file."""
         return f"{file}: {'; '.join(self.notes)}"
 
@@ -95,15 +95,15 @@ def curve_of_table(table: TableFile, argument_kinds: Sequence[Kind], value_kinds
             f"{quote(example)}"
         )
     angles = [head for head in heads if head.kind is ANGLE and ANGLE in argument_kinds]
-    x = _only_heading(
+    x = _heading_of_kind(
         table,
         [head for head in heads if head.kind in argument_kinds and not (angles and head.kind is TIME)],
         argument_kinds,
     )
-    y = _only_heading(table, [head for head in heads if head.kind in value_kinds and head is not x], value_kinds)
+    y = _heading_of_kind(table, [head for head in heads if head.kind in value_kinds and head is not x], value_kinds)
     for head in (x, y):
         _require_heading_of_kind(table, head, kinds)
-    arguments, values = table.numbers([x.place, y.place])
+    arguments, values = table.number_columns([x.place, y.place])
     again = np.flatnonzero((np.diff(arguments) == 0.0) & (np.diff(values) == 0.0))
     arguments, values = np.delete(arguments, again + 1), np.delete(values, again + 1)
     if len(arguments) < 2:
@@ -138,7 +138,7 @@ def _units_in(text: str) -> list[str]:
 
 
 def _heading_names_kind(text: str, kind: Kind) -> bool:
-    return kind.plain.split()[-1] in text.casefold()
+    return kind.name_without_article.split()[-1] in text.casefold()
 
 
 def _require_heading_of_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
@@ -161,7 +161,7 @@ def _heading_remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     return "name the unit"
 
 
-def _only_heading(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
+def _heading_of_kind(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only column, or, among several of one kind, the only one that names the kind."""
     named = [head for head in heads if _heading_names_kind(head.text, head.kind)]
     candidates = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
@@ -187,9 +187,9 @@ def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
     if (steps < 0.0).sum() > (steps > 0.0).sum():
         at, values, notes = at[::-1], values[::-1], (*notes, "sorted upwards")
     if curve.argument_head.kind is ANGLE:
-        wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.full_turn)])
+        wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.full_turn_in_angle_unit)])
         if wraps[-1]:
-            at, notes = at + curve.full_turn * wraps, (*notes, "angles continue beyond one turn")
+            at, notes = at + curve.full_turn_in_angle_unit * wraps, (*notes, "angles continue beyond one turn")
     wrong = np.flatnonzero(np.diff(at) < 0.0)
     if len(wrong):
         n = int(wrong[0])
@@ -216,24 +216,24 @@ def convert_time_to_angle(curve: Curve, speed: float) -> Curve:
     return replace(curve, argument_head=head, arguments=360.0 * turns[order], values=curve.values[order], notes=notes)
 
 
-def first_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
+def first_cycle_and_turn_count(curve: Curve, turns: int | None) -> tuple[Curve, int]:
     """Return a crank-angle curve's first cycle, and its number of turns: the given one, otherwise one or two.
 
     A record that ends close to whole turns ends with them. Raises `InputError` for a record between one turn and two.
     """
     near = (
-        min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.full_turn)
+        min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.full_turn_in_angle_unit)
         if len(curve.arguments) > 1
         else 0.0
     )
     full_turns = round(curve.turn_count)
     if full_turns >= 1 and 0.0 < abs(curve.turn_count - full_turns) <= near:
         at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (full_turns / curve.turn_count)
-        at[-1] = curve.arguments[0] + full_turns * curve.full_turn
+        at[-1] = curve.arguments[0] + full_turns * curve.full_turn_in_angle_unit
         curve = replace(curve, arguments=at)
     if turns is None:
         turns = 1 if curve.turn_count <= 1.0 else 2
-        step = float(np.median(np.diff(curve.arguments))) / curve.full_turn
+        step = float(np.median(np.diff(curve.arguments))) / curve.full_turn_in_angle_unit
         if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.turn_count <= 2.0:
             raise InputError(
                 f"{curve.name} must cover one or two turns unless the job gives the cycle; got "
@@ -243,7 +243,7 @@ def first_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         if turns == 2:
             curve = replace(curve, notes=(*curve.notes, "two turns, a cycle of 720 deg"))
     if curve.turn_count > turns:
-        in_cycle = curve.arguments < curve.arguments[0] + (turns - near) * curve.full_turn
+        in_cycle = curve.arguments < curve.arguments[0] + (turns - near) * curve.full_turn_in_angle_unit
         notes = (*curve.notes, f"the first cycle of {curve.turn_count / turns:.4g}")
         curve = replace(curve, arguments=curve.arguments[in_cycle], values=curve.values[in_cycle], notes=notes)
     return curve, turns
@@ -261,7 +261,7 @@ def drop_closing_point(curve: Curve) -> Curve:
         raise InputError(
             f"{curve.name}: {quote(curve.argument_head.text)} must increase; got {at} twice; leave out one of the two"
         )
-    curve, _ = first_cycle(curve, 1)
+    curve, _ = first_cycle_and_turn_count(curve, 1)
     if curve.turn_count < 1.0:
         return curve
     first, last = curve.values[0], curve.values[-1]

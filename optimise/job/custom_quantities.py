@@ -13,7 +13,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula import formulas
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.formula.formulas import identifiers_in
-from ...objectives.kinds import TIME, Kind, kind_in
+from ...objectives.kinds import TIME, Kind, kind_displayed_in
 from ...objectives.own.quantity import (
     FUNCTION,
     LIMIT,
@@ -24,7 +24,7 @@ from ...objectives.own.quantity import (
     require_column_name,
 )
 from ...objectives.registry import FACTS
-from ...objectives.units import is_value, kind_of_any_unit, quote, value_of_one_si_unit_in
+from ...objectives.units import is_number_with_any_unit, kind_of_any_unit, quote, value_of_one_si_unit_in
 from .constraints_and_objectives import SLOW_STROKE, Stated
 from .named_files import options_in, table_in
 from .option_amounts import kinds_of_amounts, readable_amounts
@@ -88,7 +88,7 @@ class FunctionPart(Part):
             name=name,
             function=self.function,
             title=self.title or "",
-            kind=kind_in(self.unit, value_of_one_si_unit_in(self.unit), kind_of_any_unit(self.unit)),
+            kind=kind_displayed_in(self.unit, value_of_one_si_unit_in(self.unit), kind_of_any_unit(self.unit)),
             gradient=self.gradient,
             folders=tuple(folders),
             limit=self.limit,
@@ -119,7 +119,7 @@ _KINDS = Kinds(
 )
 QuantityPart = Annotated[
     Annotated[FunctionPart, Tag("(function)")] | Annotated[FormulaPart, Tag("(formula)")],
-    Discriminator(_KINDS.tag),
+    Discriminator(_KINDS.kind_tag),
     BeforeValidator(_KINDS.require_one_kind),
 ]
 """A custom quantity of a job: a function, or a formula."""
@@ -226,7 +226,7 @@ def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
     for key, value in table.items():
         yield from identifiers_in(key)
         for bound in value.values() if isinstance(value, Mapping) else ():
-            if not (isinstance(bound, str) and is_value(bound)):  # words in a value are units
+            if not (isinstance(bound, str) and is_number_with_any_unit(bound)):  # words in a value are units
                 yield from identifiers_in(bound)
 
 

@@ -57,7 +57,7 @@ class LineMotor(Built[model.Motor]):
 class RatedMotor(Checked[model.Motor]):
     """A motor whose torque is linear in speed, given by its rated point and its no-load (synchronous) speed."""
 
-    makes = model.LinearMotor.through
+    makes = model.LinearMotor.from_rated_point
     renamed: ClassVar = {"rated_torque": "torque", "rated_speed": "speed"}
 
     rated_torque: PositiveTorque = required_entry("at the rated speed", "14.6 N m")
@@ -98,7 +98,7 @@ AnyMotor = Annotated[
     | Annotated[LineMotor, Tag("(stall_torque)")]
     | Annotated[RatedMotor, Tag("(rated_torque)")]
     | Annotated[TableMotor, Tag("(speeds)")],
-    Discriminator(_KINDS.tag),
+    Discriminator(_KINDS.kind_tag),
     BeforeValidator(_KINDS.require_one_kind),
 ]
 

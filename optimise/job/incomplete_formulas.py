@@ -16,8 +16,8 @@ from ...objectives.formula.formulas import Units, is_formula, unknown_name_error
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
-from ...objectives.tables.design_input import number_in_words
-from ...objectives.units import is_value, kind_of_any_unit
+from ...objectives.tables.design_input import words_of_number_name
+from ...objectives.units import is_number_with_any_unit, kind_of_any_unit
 from .catalogue import with_options
 from .constraints_and_objectives import SLOW_STROKE, WORDS
 from .mistake_messages import key_of_location
@@ -57,7 +57,7 @@ def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
         FormulaName(name, _part_title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()
     ]
     names += [FormulaName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
-    return [*names, *(FormulaName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
+    return [*names, *(FormulaName(path, words_of_number_name(path), kind) for path, kind in kinds.varying)]
 
 
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
@@ -150,6 +150,6 @@ def _kind_of_first_value(value: object) -> Kind | None:
         return next((kind for item in value.values() if (kind := _kind_of_first_value(item))), None)
     if isinstance(value, list | tuple):
         return next((kind for item in value[:2] if (kind := _kind_of_first_value(item))), None)
-    if not (isinstance(value, str) and is_value(value)):
+    if not (isinstance(value, str) and is_number_with_any_unit(value)):
         return None
     return kind_of_any_unit(value.strip().lstrip("+-.0123456789eE").strip())

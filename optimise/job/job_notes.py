@@ -20,7 +20,7 @@ _OF_GAS = "compression_exponent", "expansion_exponent"
 _SPEED_WORDS = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
 
 
-def notes_of(data: Mapping[str, Any]) -> list[str]:
+def job_notes(data: Mapping[str, Any]) -> list[str]:
     """Return notes on the tables of a valid job, one sentence each: plain numbers, masses without gravity, screening.
 
     Also on a speed or tables that a swing ignores, and on a liquid's exponents. If signs suggest another machine than
@@ -28,7 +28,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     """
     data, tables = with_options(data)
     job, plain = read_and_note_plain_numbers(job_type_with_quantities(declared_quantities(data, allowed=True)), data)
-    plain_notes = [item.note for item in plain if not item.warning]
+    plain_notes = [item.interpretation_text for item in plain if not item.warning_text]
     notes = []
     if plain_notes:
         left_over = f", and {len(plain_notes) - _MOST} more" if len(plain_notes) > _MOST else ""
@@ -76,14 +76,17 @@ def _catalogue_notes(table: Catalogue) -> Iterator[str]:
         else []
     )
     sentences += (
-        [f"omitted: {_join_first([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
+        [f"omitted: {_join_first_of_many([f'{row} ({why})' for row, why in table.excluded.items()])}"]
+        if table.excluded
+        else []
     )
     if few:
         sentences += [
-            f"{'others' if table.excluded else 'the others'} lose in {_join_all(table.compared)}: {_join_first(few)}"
+            f"{'others' if table.excluded else 'the others'} lose in {_join_with_and(table.compared)}: "
+            f"{_join_first_of_many(few)}"
         ]
         sentences += ["each design names the smallest row of the catalogue that suffices"]
-    sentences += [f"not used, but stored with each design: {_join_all(table.idle)}"] if table.idle else []
+    sentences += [f"not used, but stored with each design: {_join_with_and(table.idle)}"] if table.idle else []
     if sentences:
         yield f"{table.name}: {'; '.join(sentences)}"
     yield from (
@@ -91,11 +94,11 @@ def _catalogue_notes(table: Catalogue) -> Iterator[str]:
     )
 
 
-def _join_all(names: Sequence[str]) -> str:
+def _join_with_and(names: Sequence[str]) -> str:
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names) or "nothing that differs"
 
 
-def _join_first(lines: Sequence[str]) -> str:
+def _join_first_of_many(lines: Sequence[str]) -> str:
     return ", ".join(lines[:_MOST]) + (f" and {len(lines) - _MOST} more" if len(lines) > _MOST else "")
 
 
@@ -128,8 +131,8 @@ def _pin_notes(job: Job) -> list[str]:
         if radius is None:
             continue
         path = f"sections.pins.{name}"
-        varies = path in job.variables.paths or any(
-            path in option.paths for part in job.choice for option in part.option
+        varies = path in job.variables.stated_values_by_path or any(
+            path in option.values_by_path for part in job.choice for option in part.option
         )
         if varies or not math.isclose(2.0 * radius, diameter, rel_tol=1e-6):
             how = "varies" if varies else f"is a diameter of {1e3 * diameter:.6g} mm"

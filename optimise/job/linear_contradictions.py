@@ -14,11 +14,11 @@ from fractions import Fraction
 import numpy as np
 
 from ...model.errors import InfeasibleError, InputError
-from ...objectives.formula.expression import Call, Linear, linear_unknown
-from ...objectives.formula.quantity import FormulaQuantity, equation_of
+from ...objectives.formula.expression import Call, Linear, linear_form_of_unknown
+from ...objectives.formula.quantity import FormulaQuantity, linear_equation_of
 from ..problem.problem import Problem
 from ..search.elimination import offset_signs
-from ..search.linear_rules import linear_equations, with_offset_size
+from ..search.linear_rules import in_terms_of_offset_magnitude, linear_equations
 from .mistake_messages import key_of_location
 from .reachable_values import SLACK, Box
 
@@ -118,17 +118,21 @@ def _formula_bounds(part: Problem, sign: float) -> Iterator[_Row]:
         if isinstance(quantity.expression, Call) and quantity.expression.function == "/":
             continue
         for word, bound in item.sides:
-            row = equation_of(quantity, bound)
+            row = linear_equation_of(quantity, bound)
             if row is not None:
-                row = with_offset_size(row, sign)
-                yield _Row(quantity.name, row if word == "max" else row.times(Fraction(-1)), False)
+                row = in_terms_of_offset_magnitude(row, sign)
+                yield _Row(quantity.name, row if word == "max" else row.multiplied_by(Fraction(-1)), False)
 
 
 def _has_common_point(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
     """Return whether some point within the ranges meets all rows, as far as a linear programme can tell."""
     from scipy.optimize import linprog
 
-    turned = linear_unknown("crank").plus(linear_unknown("offset")).plus(linear_unknown("rod"), Fraction(-1))
+    turned = (
+        linear_form_of_unknown("crank")
+        .plus_multiple_of(linear_form_of_unknown("offset"))
+        .plus_multiple_of(linear_form_of_unknown("rod"), Fraction(-1))
+    )
     every = [*rows, _Row("", turned, False)] if turning else list(rows)
     table = np.array([[float(dict(row.sum.factors).get(name, 0)) for name in ends] for row in every])
     size = np.maximum(np.abs(table).max(axis=1), 1e-300)
@@ -185,14 +189,14 @@ def _impossibility_reasons(problem: Problem, variant: int) -> Iterator[str]:
     if part.motion is not None:
         return
     box = Box.from_problem(part)
-    if not box.turns:
+    if not box.may_rotate_fully:
         yield "no rod in its range exceeds crank + |offset|"
         return
     for constraint in part.constraints:
         quantity = part.quantity(constraint.quantity)
         if part.common_bounds(quantity) is None or not quantity.depends_only_on_dimensions:
             continue
-        least, greatest = box.possible(quantity)
+        least, greatest = box.bounds_on_quantity(quantity)
         rounding = SLACK * max(abs(least), abs(greatest))
         unit = quantity.unit
         for word, bound in constraint.sides:

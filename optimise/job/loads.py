@@ -29,7 +29,7 @@ from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
 from . import value_types
 from .crank_speed import stated_speed
-from .curve_file import convert_time_to_angle, curve_of_table, first_cycle, reduce_curve_points
+from .curve_file import convert_time_to_angle, curve_of_table, first_cycle_and_turn_count, reduce_curve_points
 from .mistake_messages import key_of_location
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, tables_in, unread_file_error
 from .part_kinds import Kinds
@@ -52,7 +52,8 @@ def with_load_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 def _load_with_points(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
     tables = {
-        (_kind_of_entry(at), _kind_of_entry(value_entry)): table for table, at, value_entry in load_tables_with_points()
+        (_kind_of_entry(at), _kind_of_entry(value_entry)): table
+        for table, at, value_entry in tables_of_loads_with_points()
     }
     if not isinstance(file, str):
         return part
@@ -91,15 +92,15 @@ def _load_with_points(part: Any, place: int, files: Files, data: Mapping[str, An
         speed = stated_speed(data, curve.name)
         curve = convert_time_to_angle(curve, speed if signed else abs(speed))
     if curve.argument_head.kind is ANGLE:
-        curve, turns = first_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
+        curve, turns = first_cycle_and_turn_count(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
         rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
     curve = reduce_curve_points(curve)
     require_point_count(len(curve.arguments), curve.name, 2)
-    places, sizes = curve.texts()
-    return rest | {at: places, value_entry: sizes, SOURCE: curve.source(file)}
+    places, sizes = curve.argument_and_value_texts()
+    return rest | {at: places, value_entry: sizes, SOURCE: curve.summary_text(file)}
 
 
-def load_tables_with_points() -> list[tuple[Table, Entry, Entry]]:
+def tables_of_loads_with_points() -> list[tuple[Table, Entry, Entry]]:
     """Return the tables of loads with points, each with its entries for the arguments and for the values."""
     every = [table for kind in load_classes() for table in kind.tables]
     pairs = [(table, [entry for entry in table.entries if entry.several]) for table in every]
@@ -128,9 +129,9 @@ def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tup
 def require_nondecreasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return the points of a load's table in SI; raise an error if one decreases or repeats twice."""
     at: tuple[float, ...] = handler(typed)
-    n = model.first_misplaced_point(at)
+    n = model.index_of_first_misplaced_point(at)
     if n is not None:
-        raise InputError(model.broken_order_rule(n, at, quote(typed[n]), quote(typed[n - 1])))
+        raise InputError(model.order_rule_broken_at_point(n, at, quote(typed[n]), quote(typed[n - 1])))
     return at
 
 
@@ -177,7 +178,7 @@ def _entry_field(entry: model.Entry) -> Any:
 def _load_file_part() -> type[LoadPart]:
     """Return a load whose points are in a file, with the possible entries of all tables."""
     entries: dict[str, list[model.Entry]] = {}
-    for table, *_ in load_tables_with_points():
+    for table, *_ in tables_of_loads_with_points():
         for entry in table.entries:
             if not entry.several:
                 entries.setdefault(entry.name, []).append(entry)
@@ -222,6 +223,6 @@ if TYPE_CHECKING:
 else:
     Load = Annotated[
         reduce(or_, (Annotated[part, Tag(f"({key})")] for key, part in PARTS.items())),
-        Discriminator(_KINDS.tag),
+        Discriminator(_KINDS.kind_tag),
         BeforeValidator(_KINDS.require_one_kind),
     ]

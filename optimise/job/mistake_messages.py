@@ -111,14 +111,14 @@ def sentences_on_mistakes(error: ValidationError, schema: Schema, tables: Mappin
     ]
 
 
-def _is_tag(part: object) -> bool:
+def _is_form_of_value(part: object) -> bool:
     """Whether a step of a location is the form of a value, "(by mass)", rather than a key."""
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
 
 
 def keys_of_location(loc: Sequence[Any]) -> list[Any]:
     """Return a location in the tables of a job, without the validator's tags."""
-    return [part for part in loc if not _is_tag(part)]
+    return [part for part in loc if not _is_form_of_value(part)]
 
 
 def key_of_location(path: Sequence[object]) -> str:
@@ -149,7 +149,7 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
     place = key_of_location([*path, key])
     owning_kinds, kind = (
         _kinds_with_key(str(key), schema, path),
-        table[-1][1:-1] if table and _is_tag(table[-1]) else "",
+        table[-1][1:-1] if table and _is_form_of_value(table[-1]) else "",
     )
     if owning_kinds and kind in allowed:
         noun = path[-2] if isinstance(path[-1], int) else "table"
@@ -300,7 +300,7 @@ def schema_nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
     """Return every alternative of the schema at a location; after a tag, only those with its key."""
     nodes = _schema_alternatives(schema, schema)
     for part in path:
-        if _is_tag(part):
+        if _is_form_of_value(part):
             nodes = [node for node in nodes if part[1:-1] in node.get("properties", {})] or nodes
             continue
         inner_nodes = []

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BaseModel, Field
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
-from ...model.machine.cylinder_machines import turns_per_cycle
+from ...model.machine.cylinders_as_machines import turns_per_cycle
 from ...model.machine.mechanism import Mechanism, SliderDistances
 from ...model.swing.swing import Swing
 from ...objectives.units import quote
@@ -208,7 +208,7 @@ class Job(Part):
             friction=self.friction.with_pins(None if self.sections is None else self.sections.pins),
             branch=mechanism.branch,
             strength=None if self.sections is None else self.sections.strength(),
-            start=self.motion.start,
+            start=self.motion.start_ranges,
             lever=lever_of(mechanism, self.cylinder, self.arm, self.spring),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
@@ -218,12 +218,12 @@ def job_type_with_quantities(declared: Declared) -> type[Job]:
     """Return the job type whose [objectives] and [constraints], also those of options, may name custom quantities."""
     if not declared.tables and not declared.formulas:
         return Job
-    return _job_with(tuple(declared.tables.items()), declared.formulas)
+    return _job_type_with(tuple(declared.tables.items()), declared.formulas)
 
 
 # A form requests the same job type repeatedly, and building one takes as long as reading ten jobs.
 @lru_cache(maxsize=16)
-def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
+def _job_type_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
     constraints, objectives = constraint_and_objective_tables(dict(custom_facts), formulas)
     choice: Any = choice_type_with_constraints(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]

@@ -138,7 +138,7 @@ class _Motion(Checked[Swing | None]):
     makes: ClassVar = _swing_of_table
 
     @property
-    def start(self) -> Start:
+    def start_ranges(self) -> Start:
         """Ranges of the swing's start, if designs choose it."""
         keys = _STARTS["crank"], _STARTS["slider"]
         return Start(angle=getattr(self, keys[0]), place=getattr(self, keys[1]))

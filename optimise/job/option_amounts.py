@@ -107,7 +107,7 @@ def excess_amount_text(name: str, value: object, word: str, bound: object) -> st
     return f"{name.replace('_', ' ')} {value}, {_TOO[word].format(bound)}"
 
 
-def amount_values(
+def amounts_of_option(
     amounts: Mapping[str, Any], quantities: Mapping[str, Amount], option_name: str
 ) -> tuple[tuple[str, float], ...]:
     """Return an option's amounts, SI. Raises JobError.

@@ -43,7 +43,7 @@ class Kinds:
             raise InputError(f"must be of one kind; got {' and '.join(keys_present)}; {self.remedy}")
         return value
 
-    def tag(self, value: object) -> str:
+    def kind_tag(self, value: object) -> str:
         """Return the tag of a table's kind, its key in brackets; empty if the table matches no kind."""
         if isinstance(value, Part):
             return next(f"({key})" for key, kind in self.parts.items() if isinstance(value, kind))

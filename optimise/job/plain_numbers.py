@@ -182,13 +182,13 @@ class PlainNumbers:
     kind: Kind
 
     @property
-    def note(self) -> str:
+    def interpretation_text(self) -> str:
         """The first of the numbers with its interpretation."""
         number = plain_numbers_in(self.value)[0]
         return f"{self.key} = {number:g} is {number:g} {self.kind.unit}{self._in_usual_unit(number, ' = {}')}"
 
     @property
-    def warning(self) -> str | None:
+    def warning_text(self) -> str | None:
         """Warning for numbers of implausible size, or beside others with a unit; None for others."""
         numbers = plain_numbers_in(self.value)
         doubtful = [number for number in numbers if not self.kind.is_plausible(number)]
@@ -250,7 +250,7 @@ def read_and_note_plain_numbers(
 
     values: replacements for numbers of the job, by path, in the report. Raises `ValidationError`.
     """
-    read, placed_numbers = _tables_as_read(job, data)
+    read, placed_numbers = _tables_with_numbers_lacking_unit(job, data)
     read = job.model_validate(data) if read is None else read
     placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in placed_numbers}
     for path in values or ():
@@ -265,14 +265,14 @@ def read_and_note_plain_numbers(
             tried = _with_number_at(tried, path, plain_numbers_in(value)[0])
         except LookupError:  # a word in the table, such as the name of a series
             continue
-    kinds = {path: kind for path, _, _, kind in _tables_as_read(job, tried)[1]}
+    kinds = {path: kind for path, _, _, kind in _tables_with_numbers_lacking_unit(job, tried)[1]}
     further = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
     return read, [*placed.values(), *further]
 
 
 def numbers_without_unit(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
     """Return the numbers without a unit in the tables of a job that may be invalid."""
-    return [PlainNumbers(key, value, kind) for _, key, value, kind in _tables_as_read(job, data)[1]]
+    return [PlainNumbers(key, value, kind) for _, key, value, kind in _tables_with_numbers_lacking_unit(job, data)[1]]
 
 
 def formula_bounds_without_unit(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
@@ -286,7 +286,9 @@ def formula_bounds_without_unit(problem: Problem, data: Mapping[str, Any]) -> It
                         yield PlainNumbers(key_of_location([table, name, word]), value, kind)
 
 
-def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
+def _tables_with_numbers_lacking_unit(
+    job: type[Table], data: Mapping[str, Any]
+) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
     """Return the tables as read if none of a valid job's numbers lacks a unit, otherwise None; and those numbers.
 
     For each number with its own entry: dotted path, key, value and kind.

@@ -13,7 +13,7 @@ from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swing_columns import require_possible_cylinder, swing_quantities
-from ..discrete.discrete_messages import require_meetable
+from ..discrete.discrete_messages import require_meetable_requirements
 from ..methods.registry import require_supported_settings
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.contradictory_problems import no_option_error
@@ -40,7 +40,7 @@ from .variables_and_variants import (
     choices_and_variants,
     dimension_ranges,
     discrete_variables,
-    is_choice,
+    has_list_of_values,
     machine_with_variables,
     range_of_dimension,
 )
@@ -57,7 +57,7 @@ def problem_of(
     """
     require_parts_of_lever(job.mechanism, costs=job.costs, target_motion=job.target_motion)
     variables, motion = job.variables, job.swing()
-    machine = _machine_of(job, motion)
+    machine = _machine_for_motion(job, motion)
     amounts = amounts_of_choices(
         {part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity
     )
@@ -120,7 +120,7 @@ def problem_of(
     _require_tolerances_below_lengths(problem)
     try:
         require_no_contradiction(problem)
-        require_meetable(problem)
+        require_meetable_requirements(problem)
     except InfeasibleError as error:
         if require_feasible:
             error.problem = problem
@@ -129,14 +129,14 @@ def problem_of(
     return make_robust(problem, job.robust)
 
 
-def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
+def _machine_for_motion(job: Job, motion: Swing | None) -> Mechanism:
     """Return the machine of a job. Raise an error for a target, numbers or quantities that its motion excludes."""
-    paths = job.variables.paths
+    paths = job.variables.stated_values_by_path
     require_target(job.target_motion, job.objectives, job.constraints)
-    chosen = {path for part in job.choice for option in part.option for path in option.paths}
+    chosen = {path for part in job.choice for option in part.option for path in option.values_by_path}
     if motion is not None and not motion.of_full_turn:
         require_constant_swing_speed({*paths, *chosen})
-    chosen |= {path for path, stated_value in paths.items() if is_choice(stated_value)}
+    chosen |= {path for path, stated_value in paths.items() if has_list_of_values(stated_value)}
     require_only_start_varies({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})
     require_swing_motion(motion, job.objectives, job.constraints)
     machine = machine_with_variables(job)
@@ -148,7 +148,7 @@ def _require_tolerances_below_lengths(problem: Problem) -> None:
     """Reject a tolerance that may be as long as its link, because its unit must be wrong."""
     for part in problem.variants or (problem,):
         for name, ends in (("crank", part.crank), ("rod", part.rod)):
-            limit = getattr(part.mechanism.with_largest_variables.tolerances, name).limit(ends.lower)
+            limit = getattr(part.mechanism.with_largest_variables.tolerances, name).deviation_limit(ends.lower)
             if limit >= ends.lower:
                 raise JobError(
                     f"tolerances.{name}: must be less than the {name} itself, which may be {1e3 * ends.lower:g} mm; "

@@ -11,7 +11,7 @@ from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.bounds_over_ranges import CLEAR, LengthRanges
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
-from ...objectives.formula.quantity import FormulaQuantity, equation_of
+from ...objectives.formula.quantity import FormulaQuantity, linear_equation_of
 from ...objectives.proportions import (
     CRANK_ANGLE_RATIO,
     ROD_TO_CRANK,
@@ -52,16 +52,16 @@ class Box:
     @classmethod
     def from_problem(cls, problem: Problem) -> Box:
         """Return the ranges of a problem, not yet narrowed."""
-        return cls(crank=problem.crank, rod=problem.rod, offset=_offset_sizes(problem.offset))
+        return cls(crank=problem.crank, rod=problem.rod, offset=_offset_magnitude_range(problem.offset))
 
-    def possible(self, quantity: Quantity) -> tuple[float, float]:
+    def bounds_on_quantity(self, quantity: Quantity) -> tuple[float, float]:
         """Return bounds on a quantity that has a reach, SI; needs `turns`."""
         assert quantity.bounds is not None
         ends = ((ends.lower, ends.upper) for ends in (self.crank, self.rod, self.offset))
         return quantity.bounds.compute(LengthRanges(*(end for pair in ends for end in pair)))
 
     @property
-    def turns(self) -> bool:
+    def may_rotate_fully(self) -> bool:
         """Whether some linkage within the ranges may rotate fully."""
         clear = self.rod.upper > (self.crank.lower + self.offset.lower) * CLEAR
         return clear and self.rod.upper * (1.0 - self.share.lower) > self.crank.lower
@@ -70,7 +70,7 @@ class Box:
 def require_reachable(problem: Problem) -> None:
     """Raise InfeasibleError if full rotation or a constraint on geometry is out of reach within the ranges."""
     box = Box.from_problem(problem)
-    if not box.turns:
+    if not box.may_rotate_fully:
         raise InfeasibleError(
             "variables: the rod must exceed crank + |offset| for full rotation; "
             f"got {_extremes_text(box)}; lengthen the rod or reduce the other two"
@@ -107,7 +107,7 @@ def _narrow_by_rod_to_offset(box: Box, constraint: Constraint, problem: Problem)
         offset=Range(lower=min(a0, a1), upper=a1),
         share=Range(lower=1.0 / greatest, upper=min(1.0, 1.0 / least if least else 1.0)),
     )
-    if not narrowed.turns:
+    if not narrowed.may_rotate_fully:
         raise InfeasibleError(
             f"constraints.{ROD_TO_OFFSET.name}: full rotation needs a crank below rod - |offset|; got "
             f"{_bounds_text(constraint)} and with it {_extremes_text(narrowed)}; shorten the crank, or raise the "
@@ -121,7 +121,7 @@ def _require_overlap(quantity: Quantity, constraint: Constraint, box: Box, probl
     key, bounds = key_of_location(["constraints", quantity.name]), problem.common_bounds(quantity)
     if bounds is None:
         return
-    least, greatest = box.possible(quantity)
+    least, greatest = box.bounds_on_quantity(quantity)
     rounding = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + rounding:
         allowed, instead = bounds.to_raise, "ask for less"
@@ -131,7 +131,7 @@ def _require_overlap(quantity: Quantity, constraint: Constraint, box: Box, probl
         return
     sentence, active = _possible_values_text(problem, constraint)
     remedy = ", ".join([f"allow {allowed}", *([f"relax {' and '.join(active)}"] if active else []), f"or {instead}"])
-    same = equation_of(quantity, 0.0) if isinstance(quantity, FormulaQuantity) else None
+    same = linear_equation_of(quantity, 0.0) if isinstance(quantity, FormulaQuantity) else None
     if same is not None and not same.names:
         sentence, remedy = f"it is {_format_value(quantity, float(same.constant))} for every design", "leave it out"
     raise InfeasibleError(f"{key}: {sentence}; got {_bounds_text(constraint, quantity)}; {remedy}")
@@ -156,14 +156,14 @@ def _possible_values_text(problem: Problem, constraint: Constraint) -> tuple[str
         (nearest, _), active = _nearest_relaxation(problem, constraint, requirements), [*narrowing]
     if nearest is None:
         return f"{ranges} it is impossible", []
-    rules = [_rule_in_words(problem, rule) for rule in active]
+    rules = [_requirement_in_words(problem, rule) for rule in active]
     rules += [_OTHERS] if len(requirements) > 1 + len({rule.quantity for rule in active}) else []
     conditions = f" and with {' and '.join(rules)}," if rules else ""
     side = "at most" if nearest.reachable < nearest.requested else "at least"
     return f"{ranges}{conditions} {side} {nearest.with_unit} is possible", [rule.quantity for rule in active]
 
 
-def _rule_in_words(problem: Problem, rule: Constraint) -> str:
+def _requirement_in_words(problem: Problem, rule: Constraint) -> str:
     quantity = problem.quantity(rule.quantity)
     bounds = (f"{RELATIONS[word]} {_format_value(quantity, bound)}" for word, bound in rule.sides)
     return f"{rule.quantity} {' and '.join(bounds)}"
@@ -258,7 +258,7 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
     return time_ratio_of_excess_angle(best)
 
 
-def _offset_sizes(offset: Range) -> Range:
+def _offset_magnitude_range(offset: Range) -> Range:
     """Return the range of |offset|."""
     ends = sorted((abs(offset.lower), abs(offset.upper)))
     spans_zero = offset.lower <= 0.0 <= offset.upper

@@ -82,7 +82,7 @@ def with_target_motion(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
         convert_time_to_angle(curve, stated_speed(data, curve.name)) if curve.argument_head.kind is TIME else curve
     )
     require_point_count(len(curve.arguments), curve.name, 3)
-    angles, positions = curve.texts()
+    angles, positions = curve.argument_and_value_texts()
     rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
-    points = {"crank_angles": angles, "positions": positions, SOURCE: curve.source(file)}
+    points = {"crank_angles": angles, "positions": positions, SOURCE: curve.summary_text(file)}
     return {**job, "target_motion": rest | points}

@@ -22,7 +22,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import count_with_noun
-from ...objectives.units import is_value, number_and_unit, quote, quoted_if_unprintable
+from ...objectives.units import is_number_with_any_unit, number_and_unit, quote, quoted_if_unprintable
 from .text_table_layout import (
     EXPONENT,
     MISSING,
@@ -155,15 +155,15 @@ class TableFile:
         return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell or "empty"
 
     @property
-    def rows(self) -> list[int]:
+    def row_lines(self) -> list[int]:
         """Line of each row in the file."""
         return [int(line) for portion in self.portions for line in portion.lines]
 
-    def texts(self, place: int) -> list[str]:
+    def column_cells(self, place: int) -> list[str]:
         """Return the cells of a column."""
         return [cell for portion in self.portions for cell in portion.columns[place].split("\n")]
 
-    def numbers(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[Array]:
+    def number_columns(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[Array]:
         """Return columns of numbers, NaN for cells without a number in columns that may be `missing` some.
 
         Raises `InputError` for other cells.
@@ -178,17 +178,17 @@ class TableFile:
             for n in places
         ]
 
-    def digits(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[list[str]]:
+    def number_texts(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[list[str]]:
         """Return columns of numbers as written, with decimal points; cells may be empty in `missing` columns.
 
         Raises `InputError` for other cells.
         """
-        numbers, parts = self.numbers(places, missing=missing), self._with_decimal_points(places)
+        numbers, parts = self.number_columns(places, missing=missing), self._with_decimal_points(places)
         columns = [[cell for _, cells_by_column in parts for cell in cells_by_column[n].split("\n")] for n in places]
         for place, column, cells in zip(places, numbers, columns, strict=True):
             for n in np.flatnonzero(np.isnan(column)):
                 if cells[n]:
-                    cell_text = self.cell_name(self.rows[n], place)
+                    cell_text = self.cell_name(self.row_lines[n], place)
                     raise InputError(f"{cell_text}: must be a number or empty; got {quote(cells[n])}; correct it")
         return columns
 
@@ -199,7 +199,7 @@ class TableFile:
         ]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
         decimal, grouping = self.signs = self._decimal_and_grouping_signs(signs)
-        example = signs.first_match(_ambiguous_number_pattern(decimal))
+        example = signs.first_cell_of_form(_ambiguous_number_pattern(decimal))
         word = "comma" if decimal == "," else "point"
         note = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
@@ -219,8 +219,8 @@ class TableFile:
     def _decimal_and_grouping_signs(self, signs: _Signs) -> tuple[str, str]:
         """Return a file's decimal sign and its thousands separator."""
         point, comma = (
-            signs.first_match(_certain_number_pattern(".", ",")),
-            signs.first_match(_certain_number_pattern(",", ".")),
+            signs.first_cell_of_form(_certain_number_pattern(".", ",")),
+            signs.first_cell_of_form(_certain_number_pattern(",", ".")),
         )
         if point is not None and comma is not None:
             raise InputError(
@@ -229,8 +229,8 @@ class TableFile:
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
         comma, point = (
-            signs.first_match(_ambiguous_number_pattern(",")),
-            signs.first_match(_ambiguous_number_pattern(".")),
+            signs.first_cell_of_form(_ambiguous_number_pattern(",")),
+            signs.first_cell_of_form(_ambiguous_number_pattern(".")),
         )
         if comma is not None and (point is not None or self.separator == ","):
             second = f" and {point}" if point is not None else ""
@@ -249,9 +249,11 @@ class TableFile:
                 return numbers
         except ValueError:
             pass
-        return np.array([self._number(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)])
+        return np.array(
+            [self._number_of_cell(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)]
+        )
 
-    def _number(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
+    def _number_of_cell(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
         if _NUMBER.fullmatch(cell) and np.isfinite(float(cell)):
             return float(cell)
         if missing and cell.casefold() in MISSING:
@@ -262,7 +264,7 @@ class TableFile:
         elif cell_text.startswith("="):
             why = f"the formula {quote(cell_text)}; save values instead of formulas"
         else:
-            with_unit = number_and_unit(cell_text) if is_value(cell_text) else None
+            with_unit = number_and_unit(cell_text) if is_number_with_any_unit(cell_text) else None
             number = with_unit[0] if with_unit and with_unit[1] else "the number alone"
             why = f"{quote(cell_text)}; write {number}, as the unit belongs in the heading"
         raise InputError(f"{self.cell_name(int(portion.lines[n]), place)}: must be a number; got {why}")
@@ -278,7 +280,7 @@ class _Signs:
     def __init__(self, texts: Sequence[str]) -> None:
         self._texts = [text for text in texts if "." in text or "," in text]
 
-    def first_match(self, pattern: str) -> str | None:
+    def first_cell_of_form(self, pattern: str) -> str | None:
         """Return the first cell of a form; None if there is none."""
         cells = re.compile(rf"^(?:{pattern})$", re.MULTILINE | re.ASCII)
         return next((hit[0] for hit in map(cells.search, self._texts) if hit), None)

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from ...objectives.units import is_value
+from ...objectives.units import is_number_with_any_unit
 
 SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
 """In order of preference: a comma may be a decimal sign, and names may contain blanks."""
@@ -116,7 +116,7 @@ def stated_separator(text: str) -> str:
 def are_only_units(cells: Sequence[str]) -> bool:
     """Whether a line has only units, at least two, as loggers write them below the names."""
     units = [_unit_without_brackets(cell) for cell in cells if _unit_without_brackets(cell)]
-    return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
+    return len(units) > 1 and all(is_number_with_any_unit(f"1 {unit}") for unit in units)
 
 
 def _unit_without_brackets(cell: str) -> str:

@@ -232,7 +232,7 @@ class Limited:
     greater_than: float | None = None
     greatest: float | None = None
 
-    def check(self, value: float) -> float:
+    def require_within_limits(self, value: float) -> float:
         """Return a value within the limits; raises InputError."""
         low = (self.least is not None and value < self.least) or (
             self.greater_than is not None and value <= self.greater_than
@@ -242,7 +242,7 @@ class Limited:
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(self.check, handler(source))
+        return core_schema.no_info_after_validator_function(self.require_within_limits, handler(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         value_schema: dict[str, Any] = handler(schema)

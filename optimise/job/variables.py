@@ -69,7 +69,7 @@ class VariablesPart(Part):
         return nested
 
     @property
-    def paths(self) -> dict[str, Any]:
+    def stated_values_by_path(self) -> dict[str, Any]:
         """The numbers that vary besides the dimensions, as stated, by path."""
         return {path: leaf for root in ROOTS for path, leaf in table_leaves(getattr(self, root), root)}
 
@@ -106,7 +106,7 @@ class OptionPart(Part):
     )
 
     @property
-    def paths(self) -> dict[str, Any]:
+    def values_by_path(self) -> dict[str, Any]:
         """The numbers that the option sets: path and value."""
         return dict(table_leaves(self.values, ""))
 

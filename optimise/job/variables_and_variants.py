@@ -29,7 +29,7 @@ from .constraints_and_objectives import constraints_of, slow_stroke_of
 from .crank_speed import TIME_KEYS
 from .mistake_messages import sentences_on_mistakes
 from .model import Job, schema_of
-from .option_amounts import amount_values
+from .option_amounts import amounts_of_option
 from .plain_numbers import stated_values_of_part, unknown_path_message, with_value_at_path
 from .value_grids import Grid, crossed_ends_remedy, read_grid, states_value_grid
 from .value_types import Choices, RangeOf, ToleranceOf
@@ -57,8 +57,8 @@ def machine_with_variables(job: Job, key: str = "variables") -> Mechanism:
     """Return the machine of a job with the extra variables from [variables]. Raises JobError, naming the path."""
     base = job.machine()
     varying = []
-    for path, stated_value in job.variables.paths.items():
-        if not is_choice(stated_value):
+    for path, stated_value in job.variables.stated_values_by_path.items():
+        if not has_list_of_values(stated_value):
             varying.append(_varying_number(job, f"{key}.{path}", path, stated_value))
     if not any(path.startswith("start.") for item in varying for path in item.paths):
         base = replace(base, start=Start())
@@ -87,7 +87,7 @@ def choices_and_variants(
             f"variables: at most {MOST} combinations of choices may be given, because each is tried; got {sizes} = "
             f"{count}; leave out some, or let a number vary over a range"
         )
-    numbers = sum(not is_choice(value) for value in job.variables.paths.values())
+    numbers = sum(not has_list_of_values(value) for value in job.variables.stated_values_by_path.values())
     if count * numbers > _MOST_READ:
         raise JobError(
             f"variables: variables times combinations of choices must be at most {_MOST_READ}; got {numbers} "
@@ -119,13 +119,13 @@ def discrete_variables(job: Job) -> tuple[Discrete, ...]:
         stated = getattr(job.variables, name)
         if isinstance(stated, Grid):
             for part in job.choice:
-                if any(name in option.paths for option in part.option):
+                if any(name in option.values_by_path for option in part.option):
                     raise JobError(
                         f"variables.{name}: a number set by options of the choice {quote(part.name)} must not be a "
                         "variable as well; leave out one of the two"
                     )
             discrete.append(Discrete(name=name, values=stated.values, rule=stated.rule))
-    for path, stated in job.variables.paths.items():
+    for path, stated in job.variables.stated_values_by_path.items():
         if states_value_grid(stated):
             grid = _read_grid(job, f"variables.{path}", path, stated)
             discrete.append(Discrete(name=path, values=grid.values, rule=grid.rule))
@@ -155,17 +155,19 @@ def dimension_ranges(job: Job) -> dict[str, Range]:
     ranges_by_name = {}
     for name in DIMENSIONS:
         options = [
-            _read_length_range(name, option.paths[name], f"choice {quote(part.name)}, option {quote(option.name)}")
+            _read_length_range(
+                name, option.values_by_path[name], f"choice {quote(part.name)}, option {quote(option.name)}"
+            )
             for part in job.choice
             for option in part.option
-            if name in option.paths
+            if name in option.values_by_path
         ]
         ranges = [range_of_dimension(getattr(job.variables, name)), *map(range_of_dimension, options)]
         ranges_by_name[name] = Range(lower=min(ends.lower for ends in ranges), upper=max(ends.upper for ends in ranges))
     return ranges_by_name
 
 
-def is_choice(value: object) -> bool:
+def has_list_of_values(value: object) -> bool:
     """Return whether a variable has a list of values that need not be numbers."""
     return isinstance(value, Mapping) and set(value) == {"choices"}
 
@@ -176,8 +178,8 @@ def _choice_axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) ->
         stated = getattr(job.variables, name)
         if isinstance(stated, Choices):
             yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in stated.choices]
-    for path, stated in job.variables.paths.items():
-        if is_choice(stated):
+    for path, stated in job.variables.stated_values_by_path.items():
+        if has_list_of_values(stated):
             values = stated["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
                 raise JobError(f"variables.{path}: choices must be a list of at least two values; got {quote(values)}")
@@ -192,10 +194,10 @@ def _choice_axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) ->
             options.append(
                 _Option(
                     o.name,
-                    o.paths,
+                    o.values_by_path,
                     tuple(constraints_of(o.constraints, formulas, f"{option_name}: ")),
                     slow_stroke_of(o.constraints),
-                    amount_values(o.amounts, amounts, option_name),
+                    amounts_of_option(o.amounts, amounts, option_name),
                     tuple((part.name, head, text) for head, text in o.notes.items()),
                     o.searched,
                     0 if part.table is None else rank,
@@ -209,7 +211,9 @@ def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...])
     values: dict[str, Any] = {}
     for name, option in zip(names, chosen, strict=True):
         for path, value in option.values.items():
-            if path in values or (path in job.variables.paths and path not in _path_of_choice(name, option)):
+            if path in values or (
+                path in job.variables.stated_values_by_path and path not in _path_of_choice(name, option)
+            ):
                 raise JobError(f"choice {name!r}: {path} may be set only once; got it twice; leave out one of the two")
             values[path] = value
     for name in DIMENSIONS:

@@ -43,7 +43,7 @@ class _ExactEvaluation:
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        values, violation = self.evaluator.step("points", (u,), lambda: self._evaluate(u))
+        values, violation = self.evaluator.recorded_step("points", (u,), lambda: self._evaluate(u))
         self.known = {
             point.tobytes(): value
             for point, value, feasible in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
@@ -60,7 +60,7 @@ class _ExactEvaluation:
         values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
         valid = np.flatnonzero(self.evaluator.can_evaluate(u))
         if len(valid):
-            goals, limits = self.evaluator.exact_rows(u[valid])
+            goals, limits = self.evaluator.objective_and_constraint_rows(u[valid])
             values[valid] = goals.values.max(axis=1)
             violation[valid] = np.minimum(limits.values.max(axis=1, initial=0.0), _FAR)
         return values, violation
@@ -99,7 +99,7 @@ def _evolve_branch(
     k, count = evaluator.dimension, 0
     members = 1 << (_POPULATION * k - 1).bit_length()  # SciPy generates Sobol points in powers of two
     generations = max(1, evaluation_budget(problem) // (len(evaluators) * members) - 1)
-    run.plan_rounds(1 + generations // _REPORT_EVERY)
+    run.expect_rounds(1 + generations // _REPORT_EVERY)
     exact = _ExactEvaluation(index, evaluator, improvements)
 
     def report_generation(intermediate_result: Any) -> bool:
@@ -173,10 +173,12 @@ def _search_basins(
     basins = basins[evaluator.can_evaluate(basins)][:_BASINS] if len(basins) else basins
     if not len(basins):
         return
-    values = evaluator.screen(basins, band=np.inf)[1]
+    values = evaluator.screen_designs_objectives_violation(basins, band=np.inf)[1]
     ideal, span = np.nanmin(values, axis=0), objective_ranges(problem, values)
     for start in basins:
-        archive_optimum(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
+        archive_optimum(
+            by_slsqp, Programme(evaluator, Form.of_single_objective(1, 0), ideal, span), start, archive, index
+        )
 
 
 _global = partial(Method, family="global", objectives="one", budget=50_000, uses=("scipy",), equalities=False)

@@ -47,7 +47,7 @@ def starting_samples(problem: Problem, evaluators: list[Evaluator]) -> Candidate
         for index, evaluator in enumerate(evaluators):
             count = -(-SAMPLES * 4 ** min(attempt, 1) // len(evaluators))
             u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
-            _, values, violation = evaluator.screen(u, band=band)
+            _, values, violation = evaluator.screen_designs_objectives_violation(u, band=band)
             good = (violation <= band + FEASIBLE) & evaluator.can_evaluate(u)
             feasible = violation[good] <= FEASIBLE
             parts.append(Candidates(np.full(len(feasible), index), u[good], values[good], feasible))
@@ -63,7 +63,7 @@ def search_from_starts(
     """Return the local optima that a solver finds from `starts` starts, which are the best distant samples."""
     sampled = starting_samples(problem, evaluators)
     archive = Archive.empty(1)
-    run.archive.add(sampled[sampled.is_feasible])
+    run.archive.add_designs(sampled[sampled.is_feasible])
     if not len(sampled):
         run.report_round("sampling", evaluators, archive)
         return archive
@@ -75,7 +75,7 @@ def search_from_starts(
         if len(archive) and is_budget_spent(problem, evaluators):
             break
         index = int(sampled.branch[row])
-        programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
+        programme = Programme(evaluators[index], Form.of_single_objective(1, 0), ideal, span)
         archive_optimum(solve, programme, sampled.u[row], archive, index)
         run.report_round("descending", evaluators, archive)
     return archive
@@ -95,7 +95,7 @@ def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archi
         optimum = solve(programme, u)
         return () if optimum is None else (optimum, programme.objectives(optimum))
 
-    optimum_and_values = programme.evaluator.step("descent", inputs, compute)
+    optimum_and_values = programme.evaluator.recorded_step("descent", inputs, compute)
     if not optimum_and_values:
         return None
     values = np.asarray(optimum_and_values[1] * programme.span + programme.ideal)

@@ -149,8 +149,8 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     def breed(past: Sequence[Generation]) -> Brood:
         climb = climbs[len(past) % len(climbs)]
         for generation in past[climb.index :: len(climbs)][climb.generations :]:
-            climb.learn(generation)
-        u = climb.ask(generation_seed(seed, len(past)))
+            climb.learn_from_generation(generation)
+        u = climb.next_generation(generation_seed(seed, len(past)))
         return Brood(np.full(len(u), climb.index), stack_rows(np.zeros((0, widest)), u))
 
     return evolve(problem, evaluators, run, breed, size=size)
@@ -162,9 +162,9 @@ class _Climb:
     def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
         self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
         self.starts, self.generations = 0, 0
-        self.begin()
+        self.start_climb()
 
-    def begin(self) -> None:
+    def start_climb(self) -> None:
         """Start from the centre the first time, then from a random point."""
         from cmaes import CMA
 
@@ -174,18 +174,18 @@ class _Climb:
         self.optimiser = CMA(mean=mean, sigma=STEP, bounds=bounds, population_size=self.size)
         self.starts += 1
 
-    def ask(self, seed: int) -> Array:
+    def next_generation(self, seed: int) -> Array:
         """Return the points (n, k) of the next generation."""
         self.optimiser.reseed_rng(seed)
         return np.array([self.optimiser.ask() for _ in range(self.optimiser.population_size)])
 
-    def learn(self, generation: Generation) -> None:
+    def learn_from_generation(self, generation: Generation) -> None:
         """Learn from the values of a generation."""
         self.generations += 1
         u, values = generation.u[:, : self.dimension], generation.values[:, 0]
         excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)
         if np.isinf(excess).all():  # there is nothing to rank
-            self.begin()
+            self.start_climb()
             return
         ranks = np.empty(len(u))
         ranks[np.lexsort([values, excess])] = np.arange(len(u))
@@ -193,7 +193,7 @@ class _Climb:
         flat = not excess.any() and np.ptp(values) <= _FLAT * np.abs(values).max()
         if flat or np.ptp(u, axis=0).max() <= _CONVERGED or self.optimiser.should_stop():
             self.size *= 2
-            self.begin()
+            self.start_climb()
 
 
 CMAES = Method(

@@ -100,7 +100,7 @@ def _breed_recorded(evaluator: Evaluator, breed: Breed, past: list[Generation]) 
         brood = breed(past)
         return brood.branch, brood.u, brood.parents
 
-    return Brood(*evaluator.step("breeding", (np.array([len(past)]),), compute))
+    return Brood(*evaluator.recorded_step("breeding", (np.array([len(past)]),), compute))
 
 
 _Evaluations = dict[tuple[int, bytes], tuple[Array, float]]
@@ -134,7 +134,7 @@ def objectives_and_violations(evaluator: Evaluator, u: Array, band: float = 0.0)
 
     Infeasible points have NaN objectives, and points with a non-finite objective count as infinitely violated.
     """
-    _, values, violation = evaluator.screen(u, band=band)
+    _, values, violation = evaluator.screen_designs_objectives_violation(u, band=band)
     violation = np.maximum(violation - band, 0.0) if band else violation
     undefined = (violation <= FEASIBLE) & ~np.isfinite(values).all(axis=1) | np.isnan(violation)
     violation = np.where(undefined, np.inf, violation)
@@ -148,7 +148,7 @@ BATCH = 1024
 two."""
 
 
-def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+def search_random_points(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs found by uniformly random points, distributed over the branches at random."""
 
     def draw(generation: int, size: int, dimension: int) -> Array:
@@ -188,7 +188,7 @@ RANDOM = _baseline(
     name="random",
     title="Random points",
     help="Uniformly random points: a baseline that every other method should beat.",
-    search=random,
+    search=search_random_points,
 )
 SOBOL = _baseline(
     name="sobol",

@@ -44,13 +44,13 @@ class Form:
     rho: float = 0.0
 
     @classmethod
-    def single(cls, objectives: int, column: int, *, rho: float = 0.0) -> Form:
+    def of_single_objective(cls, objectives: int, column: int, *, rho: float = 0.0) -> Form:
         """Return the form that equals one of the objectives."""
         weights = np.zeros(objectives)
         weights[column] = 1.0
         return cls(weights, np.zeros(objectives), np.full(objectives, np.inf), rho)
 
-    def value(self, scaled: Array) -> Array:
+    def form_value(self, scaled: Array) -> Array:
         """Return the form's value (n,) for scaled objectives (n, m); infinite above a ceiling."""
         is_weighted = self.weights > 0.0
         reached = (self.weights[is_weighted] * (scaled[:, is_weighted] - self.reference[is_weighted])).max(axis=1)
@@ -152,7 +152,7 @@ class Programme:
         if not self._valid:
             assert not first  # solvers start at valid points
             return
-        goals, limits = (rows_of_designs(rows, 0) for rows in self.evaluator.exact_rows(clipped))
+        goals, limits = (rows_of_designs(rows, 0) for rows in self.evaluator.objective_and_constraint_rows(clipped))
         goals = Rows(
             (goals.values - self.ideal[goals.owner]) / self.span[goals.owner],
             goals.gradients / self.span[goals.owner][:, None],
@@ -208,11 +208,11 @@ def _align_pieces(rows: Rows, before: Rows, groups: list[IntArray]) -> Rows:
         distances = np.abs(rows.labels[columns][:, None] - before.labels[columns])
         distances = np.minimum(distances, np.abs(distances - 2.0 * np.pi))
         is_absent = ~(np.isfinite(rows.values[columns])[:, None] & np.isfinite(before.values[columns]))
-        order[columns] = columns[_match_labels(np.where(is_absent | ~np.isfinite(distances), np.pi, distances))]
+        order[columns] = columns[_match_rows_to_places(np.where(is_absent | ~np.isfinite(distances), np.pi, distances))]
     return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
 
 
-def _match_labels(distances: Array) -> IntArray:
+def _match_rows_to_places(distances: Array) -> IntArray:
     """Return the row for each position."""
     from scipy.optimize import linear_sum_assignment
 
@@ -238,9 +238,9 @@ class Achievement:
         """Return which points give a linkage that rotates fully."""
         return self.evaluator.can_evaluate(u)
 
-    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
+    def objective_and_constraint_rows(self, u: Array) -> tuple[Rows, Rows]:
         """Return the rows of the form's 1 + m objectives, and the rows of constraints and ceilings."""
-        goals, limits = self.evaluator.exact_rows(u)
+        goals, limits = self.evaluator.objective_and_constraint_rows(u)
         owner, form = goals.owner, self.form
         values = (goals.values - self.ideal[owner]) / self.span[owner]
         slopes = goals.gradients / self.span[owner][:, None]

@@ -62,7 +62,7 @@ def epsilon_constraint(front: _Front) -> Aims:
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
         ceilings = cells[[bool((edge <= row + _SLACK).all(axis=1).any()) for row in cells]]
         parts += max(1, parts // 4)
-    only = Form.single(m, 0, rho=SUM)
+    only = Form.of_single_objective(m, 0, rho=SUM)
     forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), SUM) for row in ceilings]
     return forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), SUM)
 
@@ -128,21 +128,21 @@ class _Front:
     def scaled(self, values: Array) -> Array:
         return np.asarray((values - self.ideal) / self.span)
 
-    def optimum(self, form: Form, index: int, u: Array) -> Array | None:
+    def archive_optimum_of_form(self, form: Form, index: int, u: Array) -> Array | None:
         """Archive the optimum of the form near a point; return its objectives (m,), SI, or None if there is none."""
         programme = Programme(self.evaluators[index], form, self.ideal, self.span)
         return archive_optimum(by_slsqp, programme, u, self.archive, index)
 
-    def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
+    def solve_forms(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
         """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""
         for _ in range(1 + _ROUNDS):
-            self.run.plan_rounds(-(-len(forms) // _ROUND_SIZE))
+            self.run.expect_rounds(-(-len(forms) // _ROUND_SIZE))
             for begin in range(0, len(forms), _ROUND_SIZE):
                 if is_budget_spent(self.problem, self.evaluators):
                     return self.archive
                 for form in forms[begin : begin + _ROUND_SIZE]:
-                    for index, u in self._starts(form):
-                        self.optimum(form, index, u)
+                    for index, u in self._best_starts_per_branch(form):
+                        self.archive_optimum_of_form(form, index, u)
                 self.run.report_round("scalarising", self.evaluators, self.archive)
             forms = [aimed(aim) for aim in self._gap_points()]
             if not forms:
@@ -173,12 +173,12 @@ class _Front:
         self.aimed = np.concatenate([self.aimed, aims[picked]])
         return np.asarray(aims[picked])
 
-    def _starts(self, form: Form) -> list[tuple[int, Array]]:
+    def _best_starts_per_branch(self, form: Form) -> list[tuple[int, Array]]:
         """Return the best point on every branch, unless it is clearly worse than that on another."""
         points = self.archive.join(self.samples)
         scaled = self.scaled(points.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
-        merits = replace(form, ceilings=np.full(len(form.weights), np.inf)).value(scaled) + 10.0 * excess
+        merits = replace(form, ceilings=np.full(len(form.weights), np.inf)).form_value(scaled) + 10.0 * excess
         starts: list[tuple[float, int, Array]] = []
         for index in np.unique(points.branch).tolist():
             on_branch = np.flatnonzero(points.branch == index)
@@ -233,7 +233,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
     m = len(problem.objectives)
     sampled = starting_samples(problem, evaluators)
     front = Archive.empty(m)
-    run.archive.add(sampled[sampled.is_feasible])
+    run.archive.add_designs(sampled[sampled.is_feasible])
     if not len(sampled):
         run.report_round("sampling", evaluators, front)
         return None
@@ -244,7 +244,9 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
     for column in range(m):
         best = np.full(m, np.inf)
         for row in sampled.leading_rows(column, _STARTS):
-            values = shared.optimum(Form.single(m, column, rho=SUM), int(sampled.branch[row]), sampled.u[row])
+            values = shared.archive_optimum_of_form(
+                Form.of_single_objective(m, column, rho=SUM), int(sampled.branch[row]), sampled.u[row]
+            )
             if values is not None and values[column] < best[column]:
                 best = values
         if not np.isfinite(best).all():
@@ -258,7 +260,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
 def scalarised(problem: Problem, evaluators: list[Evaluator], run: Run, *, aims: Callable[[_Front], Aims]) -> Archive:
     """Return the front found with the forms of a method."""
     front = _payoff_front(problem, evaluators, run)
-    return Archive.empty(len(problem.objectives)) if front is None else front.solve(*aims(front))
+    return Archive.empty(len(problem.objectives)) if front is None else front.solve_forms(*aims(front))
 
 
 _scalarisation = partial(Method, family="scalarisation", objectives="several", budget=100_000, uses=("scipy",))

@@ -104,7 +104,7 @@ class Programme:
         simpson = np.stack([(turn.width + np.roll(turn.width, 1)) / 6.0, 4.0 * turn.width / 6.0])
         self.slowness = (simpson * np.sqrt(0.5 * self.inertia / self.energy_unit) / self.time_unit).ravel()
 
-    def time(self, energies: Array) -> float:
+    def turn_time(self, energies: Array) -> float:
         """Return the time of a turn, s, by Simpson's rule; K (2, n), J: at starts and middles."""
         return float(self.slowness @ np.sqrt(self.energy_unit / energies.ravel())) * self.time_unit
 
@@ -119,7 +119,7 @@ class Programme:
             cone.rules.append(cone.cp.abs(cone.torque) <= needs.torque_limit / self.unit)
         pace = cone.limit_time(needs)
         sides = cone.limit_acceleration(aim == "acceleration")
-        objective = cone.objective(aim)
+        objective = cone.objective_with_rules(aim)
         problem = cone.cp.Problem(cone.cp.Minimize(objective), cone.rules)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the bound shows the effect of an inaccurate answer
@@ -182,7 +182,7 @@ class _Cone:
             self.rules.append(self._product_at_least_square(self.places, self.ones, self._root))
         return self._root
 
-    def time(self) -> Any:
+    def turn_time_bound(self) -> Any:
         """Return an upper bound on the time of the turn."""
         inverse = self.cp.Variable(len(self.ones))
         self.rules.append(self._product_at_least_square(self.energy_root, inverse, self.ones))
@@ -193,7 +193,7 @@ class _Cone:
         time_unit = self.programme.time_unit
         limits: list[tuple[float, Any]] = []
         if needs.longest is not None:
-            limits.append((1.0, self.time() <= needs.longest / time_unit))
+            limits.append((1.0, self.turn_time_bound() <= needs.longest / time_unit))
         if needs.least is not None:
             low, high, slowness = self.programme.low.ravel(), self.programme.high.ravel(), self.programme.slowness
             if needs.energies is None:  # the chord of 1 / sqrt(K) between the limits
@@ -223,14 +223,14 @@ class _Cone:
         self.rules += sides
         return sides
 
-    def objective(self, aim: Aim) -> Any:
+    def objective_with_rules(self, aim: Aim) -> Any:
         """Return the objective, and add its rules."""
         if aim == "peak torque":
             self.rules.append(self.cp.abs(self.torque) <= self.size)
         if aim in ("peak torque", "acceleration"):
             return self.size
         if aim == "cycle time":
-            return self.time()
+            return self.turn_time_bound()
         slowness = self.programme.slowness
         if aim == "long cycle":
             return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`law_limits`)

@@ -62,13 +62,17 @@ class Reachable:
 
     def laws_within(self, torque: float) -> ReachableLaws:
         """Return the slowest and fastest law within a torque, N m."""
-        loss = self._continue_over_three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.load_work)
-        gain = self._continue_over_three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.load_work)
+        loss = self._continue_over_three_turns(
+            torque * self.passed + self.taken, torque * TURN + self.turn.work_absorbed_by_loads
+        )
+        gain = self._continue_over_three_turns(
+            torque * self.passed - self.taken, torque * TURN - self.turn.work_absorbed_by_loads
+        )
         slowest, fastest = self._least_energies(self.low, loss, gain), -self._least_energies(-self.high, gain, loss)
         within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
         fastest = np.maximum(fastest, slowest)  # it may be lower if no law exists
-        closes = abs(self.turn.load_work) <= torque * TURN * (1.0 + _ROUNDING)
-        return ReachableLaws(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
+        closes = abs(self.turn.work_absorbed_by_loads) <= torque * TURN * (1.0 + _ROUNDING)
+        return ReachableLaws(slowest, fastest, self._turn_time(slowest), self._turn_time(fastest), within and closes)
 
     def least_torque(self, torque: float, longest: float, least: float) -> float:
         """Return the torque, N m, below which no law takes between `least` and `longest`, s.
@@ -92,7 +96,7 @@ class Reachable:
             low, high = (low, middle) if suffices(middle) else (middle, high)
         return low
 
-    def _time(self, energy: Array) -> float:
+    def _turn_time(self, energy: Array) -> float:
         return float(np.sum(self.turn.angle_weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
 
     def _least_energies(self, limit: Array, loss: Array, gain: Array) -> Array:
@@ -178,7 +182,7 @@ class LawLimits:
         """Crank angles at the start and the end of the window, rad."""
         return () if self.window is None else (self.window[0], self.window[0] + self.way * self.window[1])
 
-    def name(self, field: str) -> str:
+    def name_of_field(self, field: str) -> str:
         """Return the interface's name for a field."""
         return self.names.get(field, field)
 

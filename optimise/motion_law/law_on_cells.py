@@ -62,7 +62,7 @@ def solve_on_cells(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) ->
     margins, target = Margins(*np.full((3, len(turn.width)), _MARGIN)), limits.cycle_time
     for _ in range(_ROUNDS):
         search = _Search(Programme(turn, limits, margins), guess, target)
-        answer = search.best()
+        answer = search.best_law_and_faster()
         if answer is None:
             return None
         law, missing, fast = _law_with_cycle_time(turn, limits, *answer)
@@ -95,7 +95,7 @@ class _Search:
         self.programme, self.limits, self.guess, self.cycle_time = programme, programme.limits, guess, cycle_time
         self.proofs: list[Proof] = []
 
-    def best(self) -> tuple[Solution, Solution | None] | None:
+    def best_law_and_faster(self) -> tuple[Solution, Solution | None] | None:
         """Return the best law, and a faster one to combine with it if a least time is active; or None."""
         request = self.limits.request
         if request.objective == "cycle time":
@@ -106,15 +106,15 @@ class _Search:
         if fast is None:
             return None
         if request.objective == "rms torque":
-            if not self._too_fast(fast):
+            if not self._is_too_fast(fast):
                 return fast, None
             self._solve_and_record("rms torque", replace(needs, longest=None, least=self.cycle_time))
             slow = self._solve_by_tangents("rms torque", needs, self._reference_energies(None), prove=True)
             return None if slow is None else (slow, fast)
         peak, reference = fast.value, fast.energies
-        if self._too_fast(fast):
+        if self._is_too_fast(fast):
             slow = self.programme.solve("long cycle", Requirement(torque_limit=peak * (1.0 + _TIE)))
-            if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
+            if slow is not None and self.programme.turn_time(slow.energies) >= self.cycle_time:
                 reference = self._combine_to_cycle_time(fast.energies, slow.energies)
             else:
                 slow = self._solve_by_tangents("peak torque", needs, self._reference_energies(slow), prove=True)
@@ -126,7 +126,7 @@ class _Search:
                 peak, reference = max(peak, slow.value), slow.energies
         needs = replace(needs, torque_limit=peak * (1.0 + _TIE))
         calm = self.programme.solve("rms torque", needs) or fast
-        if not self._too_fast(calm):
+        if not self._is_too_fast(calm):
             return calm, None
         slow = self._solve_by_tangents("rms torque", needs, reference)
         return None if slow is None else (slow, calm)
@@ -144,10 +144,10 @@ class _Search:
         simpson = turn.width * (starts + 4.0 * middles + np.roll(starts, -1)) / 6.0
         return np.asarray(simpson - np.sum(turn.angle_weights * law.node_slowness, axis=1))
 
-    def _too_fast(self, solution: Solution) -> bool:
+    def _is_too_fast(self, solution: Solution) -> bool:
         if self.limits.request.timing != "equal":
             return False
-        return self.programme.time(solution.energies) < self.cycle_time * (1.0 - _EQUAL)
+        return self.programme.turn_time(solution.energies) < self.cycle_time * (1.0 - _EQUAL)
 
     def _solve_and_record(self, aim: Aim, needs: Requirement) -> Solution | None:
         solution = self.programme.solve(aim, needs)
@@ -160,7 +160,7 @@ class _Search:
         from scipy.optimize import brentq
 
         def lateness(share: float) -> float:
-            return self.programme.time(fast + share * (slow - fast)) - self.cycle_time
+            return self.programme.turn_time(fast + share * (slow - fast)) - self.cycle_time
 
         return np.asarray(fast + float(brentq(lateness, 0.0, 1.0, xtol=1e-15)) * (slow - fast))
 
@@ -182,7 +182,7 @@ class _Search:
         for _ in range(_DOUBLINGS):
             torque = min(2.0 * torque, most)
             slow = self.programme.solve("long cycle", Requirement(torque_limit=torque))
-            if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
+            if slow is not None and self.programme.turn_time(slow.energies) >= self.cycle_time:
                 return self._combine_to_cycle_time(fast.energies, slow.energies)
             if torque == most:
                 break
@@ -217,7 +217,7 @@ def _law_with_cycle_time(
     turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None
 ) -> tuple[MotionLaw, float, bool]:
     """Return the law with the cycle time, or at most that; the time that was missing; whether laws were combined."""
-    law = MotionLaw.made_periodic(turn, slow.torque, float(slow.energy[0]))
+    law = MotionLaw.from_torque_made_periodic(turn, slow.torque, float(slow.energy[0]))
     request, cycle_time = limits.request, limits.cycle_time
     if not law.node_energies.min() > 0.0 or request.objective == "cycle time":
         return law, 0.0, fast is not None
@@ -225,16 +225,16 @@ def _law_with_cycle_time(
     if request.timing == "at most" and missing >= 0.0:
         return law, 0.0, False
     if fast is not None:
-        other = MotionLaw.made_periodic(turn, fast.torque, float(fast.energy[0]))
+        other = MotionLaw.from_torque_made_periodic(turn, fast.torque, float(fast.energy[0]))
         if missing <= 0.0 and other.node_energies.min() > 0.0:
-            return _with_period(lambda share: law.mixed_with(other, share), 0.0, 1.0, cycle_time), 0.0, True
+            return _law_with_period(lambda share: law.mixed_with(other, share), 0.0, 1.0, cycle_time), 0.0, True
     # A constant added to K changes no torque.
     room = 1e-2 * float(law.node_energies.min())
-    near = _with_period(lambda added: replace(law, start_energy=law.start_energy + added), -room, room, cycle_time)
+    near = _law_with_period(lambda added: replace(law, start_energy=law.start_energy + added), -room, room, cycle_time)
     return near, missing, fast is not None
 
 
-def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float, period: float) -> MotionLaw:
+def _law_with_period(law_of: Callable[[float], MotionLaw], first: float, last: float, period: float) -> MotionLaw:
     """Return the law with a given period, s, from a family; if none has it, the nearer end."""
     from scipy.optimize import brentq
 

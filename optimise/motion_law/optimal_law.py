@@ -147,7 +147,8 @@ def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
         angle = math.degrees(float(turn.angle[worst])) % 360.0
         raise InputError(
             f"limits of a motion law exclude each other: at a crank angle of {angle:.6g} deg the slider's speed limit "
-            f"allows {rpm_text(allowed)}, and {limits.name('least_speed')} is {rpm_text(limits.least_speed)}; reduce "
+            f"allows {rpm_text(allowed)}, and {limits.name_of_field('least_speed')} is "
+            f"{rpm_text(limits.least_speed)}; reduce "
             "the latter or raise the slider's speed"
         )
 
@@ -162,7 +163,7 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
     shortest = reachable.laws_within(_AMPLE * max(load, request.torque_limit or 0.0, 1.0)).shortest
     if shortest > longest:
         return InputError(
-            f"the speed limits allow no cycle shorter than {shortest:.6g} s; {limits.name('cycle_time')} is "
+            f"the speed limits allow no cycle shorter than {shortest:.6g} s; {limits.name_of_field('cycle_time')} is "
             f"{limits.cycle_time:.6g} s; extend it, or raise a limit"
         )
     slower = "; raise it, or widen the speed limits" + ("" if math.isinf(longest) else ", or extend the cycle time")
@@ -171,14 +172,16 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
         if needed is not None and needed.value > 1.0:
             return InputError(
                 f"a law within these limits needs a crank acceleration of at least "
-                f"{needed.value * request.crank_acceleration:.6g} rad/s^2; {limits.name('crank_acceleration')} is "
+                f"{needed.value * request.crank_acceleration:.6g} rad/s^2; "
+                f"{limits.name_of_field('crank_acceleration')} is "
                 f"{request.crank_acceleration:.6g} rad/s^2{slower}"
             )
     if request.torque_limit is not None:
-        mean_torque, name = abs(turn.load_work) / TURN, limits.name("torque_limit")
+        mean_torque, name = abs(turn.work_absorbed_by_loads) / TURN, limits.name_of_field("torque_limit")
         if mean_torque > request.torque_limit:
             return InputError(
-                f"the loads absorb {abs(turn.load_work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
+                f"the loads absorb {abs(turn.work_absorbed_by_loads):.6g} J in a turn, a mean torque of "
+                f"{mean_torque:.6g} N m; "
                 f"{name} is "
                 f"{request.torque_limit:.6g} N m; raise it"
             )
@@ -190,7 +193,7 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"a law within these limits needs a torque of at least {least:.6g} N m; {name} is "
                 f"{request.torque_limit:.6g} N m{slower}"
             )
-    narrow = [limits.name(field) for field in request.narrowing_fields]
+    narrow = [limits.name_of_field(field) for field in request.narrowing_fields]
     return InputError(
         "a motion law must be resolved between the speed limits; got a machine whose kinetic energy is too small "
         "compared with the work of its loads, or limits that leave almost no room; state or raise the inertia in "

@@ -58,7 +58,7 @@ def constraints_with_floors(problem: Problem) -> tuple[Constraint, ...]:
 def _with_floors_of_lever(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
     """Return constraints with the floors of a lever, as far as its cylinder is known."""
     for quantity in _FLOORS_OF_LEVER:
-        fits = problem.motion is None or quantity.unfit(problem.motion) is None
+        fits = problem.motion is None or quantity.unfit_swing_reason(problem.motion) is None
         if fits and not quantity.undefined_because([problem.mechanism]):
             constraints = _with_floor(problem, constraints, quantity)
     return constraints
@@ -170,6 +170,6 @@ def scaled_excess(values: Array, side: float, bound: float, scale: float) -> Arr
     return (values - bound if side > 0.0 else bound - values) / scale
 
 
-def needs_cycle(quantity: Quantity) -> bool:
+def needs_computed_cycle(quantity: Quantity) -> bool:
     """Return whether a quantity has no closed form, so that a cycle must be computed."""
     return not quantity.depends_only_on_dimensions

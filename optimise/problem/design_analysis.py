@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, TypeVar, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.errors import InputError, reading_in_both_units, warn_user
+from ...model.errors import InputError, number_in_si_and_usual_unit, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import real_or_complex_array
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.formula.quantity import FormulaQuantity
@@ -24,19 +24,19 @@ from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.all_quantities import missing_value_reason
-from ...objectives.tables.curve_deviation import deviations
+from ...objectives.tables.curve_deviation import curve_deviations
 from ...objectives.tables.cycle_curves import Curve, cycle_curves, cycle_table, even_angles
 from ...objectives.tables.design_input import (
     designs_as_array,
     has_finite_numbers,
     names_of_design_numbers,
+    printed_or_type_text,
     require_machine,
-    short_text,
     warn_of_lengths,
 )
-from ...objectives.tables.evaluate_quantities import violations
+from ...objectives.tables.evaluate_quantities import violations_of_allowables
 from ...objectives.tables.measured_curves import samples_of_measured_table
-from ...objectives.tables.swing_columns import quantities_for_swing, require_motion, require_quantities_of_motion
+from ...objectives.tables.swing_columns import linkage_that_can_move, quantities_for_swing, require_quantities_of_motion
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
 
 if TYPE_CHECKING:
@@ -116,7 +116,10 @@ class Analysis(Mapping[str, float]):
         Allowable values are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material at the
         pins, and safety factors of 1 in the bars. Without a material, there are none.
         """
-        return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.quantity_values.get).items()}
+        return {
+            name: float(beyond[0])
+            for name, beyond in violations_of_allowables(self.mechanism, self.quantity_values.get).items()
+        }
 
     def table(self) -> pd.DataFrame:
         """Return a table with one row per quantity, by name: title, value, display unit, reason if undefined."""
@@ -149,7 +152,7 @@ class Analysis(Mapping[str, float]):
         for angle in () if np.ndim(angles) == 0 else real_or_complex_array(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
-                doubt = reading_in_both_units("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
+                doubt = number_in_si_and_usual_unit("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
                 warn_user(f"crank angles must be in rad: {doubt}")
                 break
         return cycle_table(self.mechanism, self.linkage, angles)
@@ -172,7 +175,7 @@ class Analysis(Mapping[str, float]):
 
         given = samples_of_measured_table(measured, self.mechanism, self.linkage)
         rows = {}
-        for found in deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
+        for found in curve_deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
             fit = (found.fit.crank_angle, found.fit.value, found.fit.rms) if found.fit else (np.nan,) * 3
             numbers = (found.count, found.rms, found.mean, found.largest, found.crank_angle, *fit)
             rows[found.name] = dict(zip(_DEVIATION, (found.title, found.kind.unit, *numbers), strict=True))
@@ -242,7 +245,8 @@ def machine_and_design_row(mechanism: Mechanism, design: ArrayLike) -> tuple[Mec
     sizes = designs_as_array(design, names)
     if sizes.ndim != 1 or not np.isfinite(sizes).all() or (sizes[0] > 0.0 and not has_finite_numbers(sizes[None])[0]):
         raise InputError(
-            f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got {short_text(design)}; "
+            f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got "
+            f"{printed_or_type_text(design)}; "
             "give one "
             "design, as a list of these"
         )
@@ -285,7 +289,7 @@ def analyse_machine(
 ) -> Analysis:
     """Return the result of `analyse`. machine: machine of the design with the numbers `sizes` (3 + k,)."""
     given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-    linkage = require_motion(machine, given, swing)
+    linkage = linkage_that_can_move(machine, given, swing)
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}
     chosen = (*QUANTITIES.values(), *own) if swing is None else quantities_for_swing(own)

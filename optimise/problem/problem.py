@@ -20,16 +20,16 @@ from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.bounds_over_ranges import QuantityBounds
 from ...objectives.catalogue_amount import Amount, substitute_amounts
-from ...objectives.formula.resolve_names import is_formula, resolve_quantities
+from ...objectives.formula.resolve_names import is_formula_or_number_name, resolve_quantities
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, first_names_text
 from ...objectives.tables.design_input import designs_as_array, names_of_design_numbers, warn_of_lengths
-from ...objectives.tables.evaluate_quantities import evaluated_as_array
+from ...objectives.tables.evaluate_quantities import quantities_as_array
 from ...objectives.tables.swing_columns import (
     reason_undefined_for_swing,
     require_loads_for_swing,
+    require_motion_of_machine_kind,
     require_quantities_of_motion,
-    require_same_driver,
     require_swing_quantity,
     swing_quantities,
 )
@@ -166,7 +166,7 @@ class Problem:
         require_field_types(self, _EACH, _CHANGE, item_by_item=True)
         require_distinct_numbers(self.discrete, [*self.ranges])
         for own in self.variants or (self,):
-            require_same_driver(own.mechanism, self.motion)
+            require_motion_of_machine_kind(own.mechanism, self.motion)
         if self.motion is not None:
             self._add_swing_quantities(self.motion)
         else:
@@ -231,7 +231,7 @@ class Problem:
         """Add the formulas that objectives and constraints name."""
         requested_names = [item.quantity for item in self.objectives]
         for name in (*requested_names, *(item.quantity for item in self.every_constraint)):
-            if is_formula(name, self.mechanism, self.own):
+            if is_formula_or_number_name(name, self.mechanism, self.own):
                 made = self.quantity(name)
                 if made.name != name:
                     raise InputError(
@@ -293,7 +293,7 @@ class Problem:
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
         given = designs_as_array(designs, names_of_design_numbers(self.mechanism))
         warn_of_lengths(self, given, self._greatest_dimensions)
-        return evaluated_as_array(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
+        return quantities_as_array(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
         """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the extra variables, SI.
@@ -350,7 +350,7 @@ class Problem:
         `InputError` for a dead point that the slider cannot pass, for ends that are missing or of two kinds, and as
         `analyse` does.
         """
-        from ...model.swing.summary import SwingRequest, resolve_swing, summarise
+        from ...model.swing.summary import SwingRequest, resolve_swing, summarise_swing
 
         self._require_no_choices()
         requested_names = SwingRequest(
@@ -366,7 +366,7 @@ class Problem:
         )
         machine, sizes = machine_and_design_row(self.mechanism, design)
         machine, swing = resolve_swing(machine, self.motion, requested_names, {"side": "crank_side"})
-        return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
+        return summarise_swing(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
 
     def _require_no_choices(self) -> None:
         if self.variants:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.checks import store_as_tuples
-from ...model.errors import InputError, reading_in_both_units, warn_user
+from ...model.errors import InputError, number_in_si_and_usual_unit, warn_user
 from ...objectives.kinds import ANGLE
 from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.registry import FACTS, QUANTITIES, first_names_text
@@ -165,7 +165,7 @@ def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
     for name, number in numbers.items():
         if number is not None and abs(number) > most > 0.0:
             usual = kind.metric
-            doubt = reading_in_both_units(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
+            doubt = number_in_si_and_usual_unit(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
             warn_user(f"requirements must be in SI: {quantity}, {doubt}")
             break
 

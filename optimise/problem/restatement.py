@@ -93,7 +93,7 @@ def restate_constraint(problem: Problem, constraint: Constraint) -> Constraint:
 
 def _is_possible(quantity: Quantity, value: float, *, least: bool) -> bool:
     """Return whether a value is a possible bound on the quantity."""
-    refused = quantity.domain is not None and quantity.domain.refuses(value, least=least)
+    refused = quantity.domain is not None and quantity.domain.refuses_bound(value, least=least)
     return math.isfinite(value) and not refused and (quantity.signed or value >= 0.0)
 
 

@@ -40,7 +40,7 @@ def robust_problem(problem: Problem, plan: Robust) -> Problem:
 
     Raises `InputError` for a quantity that is not in the problem, cannot be robust, or has no gradient.
     """
-    chosen_names = _robust_names(problem, plan)
+    chosen_names = _names_to_make_robust(problem, plan)
     sides: dict[str, set[Side]] = {name: set() for name in chosen_names}
     for constraint in problem.every_constraint:
         if constraint.quantity in sides and not constraint.equality:
@@ -83,7 +83,7 @@ def robust_quantities(problem: Problem) -> tuple[RobustQuantity, ...]:
     return tuple(quantity for quantity in problem.own if isinstance(quantity, RobustQuantity))
 
 
-def asks_robust(problem: Problem) -> bool:
+def has_robust_requirements(problem: Problem) -> bool:
     """Return whether any objective or constraint is robust, which takes a hundred times as long."""
     names = [item.quantity for item in problem.objectives] + [item.quantity for item in problem.every_constraint]
     return any(isinstance(problem.quantity(name), RobustQuantity) for name in names)
@@ -108,7 +108,7 @@ def nominal_problem(problem: Problem) -> Problem:
     )
 
 
-def _robust_names(problem: Problem, plan: Robust) -> list[str]:
+def _names_to_make_robust(problem: Problem, plan: Robust) -> list[str]:
     """Return the names of the quantities to make robust."""
     bounded = [c.quantity for c in problem.every_constraint if not c.equality]
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
@@ -116,7 +116,7 @@ def _robust_names(problem: Problem, plan: Robust) -> list[str]:
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
     same = {"".join(name.split()): name for name in (*able, *held, *aimed)}  # spaces in a formula do not matter
     chosen = (
-        [name for name in able if not (of := problem.quantity(name)).about_tolerances and not of.constant]
+        [name for name in able if not (of := problem.quantity(name)).about_tolerances and not of.is_constant]
         if plan.quantities is None
         else [same.get("".join(name.split()), name) for name in plan.quantities]
     )

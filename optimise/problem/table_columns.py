@@ -7,7 +7,7 @@ from ...model.errors import InputError
 from ...model.machine.varying_numbers import Varying
 from ...objectives.quantity import Quantity
 from ...objectives.registry import FACTS
-from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_design_numbers
 from ...objectives.tables.swing_columns import OF_A_TURN
 
 RESIDUAL, STATUS = "residual", "status"
@@ -50,7 +50,7 @@ def require_free_columns(
     choices: columns of choices, each with its description.
     """
     owner = dict.fromkeys(_EVERY, "every table") | {of.field: name for name, of in FACTS.items()}
-    owner |= {column: name for name, (column, _) in columns_of_numbers(varying).items()}
+    owner |= {column: name for name, (column, _) in columns_of_design_numbers(varying).items()}
     for field, what in choices:
         if field in owner:
             raise InputError(

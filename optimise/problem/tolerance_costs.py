@@ -52,7 +52,7 @@ class Cost:
         """Return the cost of a tolerance, m or rad; infinite at zero."""
         return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
 
-    def slope(self, tolerance: float) -> float:
+    def cost_slope(self, tolerance: float) -> float:
         """Return the derivative of the cost with respect to the tolerance, per m or rad; never positive."""
         return -self.exponent * (self.cost_at(tolerance) - self.fixed) / tolerance
 
@@ -67,11 +67,11 @@ class Costs:
     crank_angle: Cost | None = None
 
     def __post_init__(self) -> None:
-        if not self.by_name:
+        if not self.costs_by_name:
             raise InputError("costs must name at least one of crank, rod, offset and crank_angle; got none")
 
     @property
-    def by_name(self) -> dict[str, Cost]:
+    def costs_by_name(self) -> dict[str, Cost]:
         """The stated costs by name, in the order of `NAMES`."""
         return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
 
@@ -83,9 +83,9 @@ NAMES = (*DIMENSIONS, "crank_angle")
 def costs_of_tolerances(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return the cost of each tolerance of a mechanism, by name; None if a tolerance with a cost is zero."""
     limits_by_name = dict(zip(NAMES, limits_of_sources(before, linkage)[: len(NAMES)], strict=True))
-    if not all(limits_by_name[name] > 0.0 for name in costs.by_name):
+    if not all(limits_by_name[name] > 0.0 for name in costs.costs_by_name):
         return None
-    return {name: cost.cost_at(float(limits_by_name[name])) for name, cost in costs.by_name.items()}
+    return {name: cost.cost_at(float(limits_by_name[name])) for name, cost in costs.costs_by_name.items()}
 
 
 def _require_at_least(subject: str, name: str, value: float, least: float = 0.0) -> None:

@@ -11,7 +11,13 @@ from ...objectives.catalogue_amount import Amount
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.kinds import count_with_noun
 from ..front.front import Columns, ParetoFront, Status
-from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ideal_and_range, ignore_progress
+from ..front.hypervolume import (
+    ReportProgress,
+    choose_designs_by_hypervolume,
+    hypervolume,
+    ideal_and_range,
+    ignore_progress,
+)
 from ..front.stationarity import STATIONARY, optimality_multipliers, slack_of
 from ..problem.constraint_violation import constraints_with_floors
 from ..problem.problem import Problem
@@ -107,11 +113,13 @@ def _on_partly_described_kink(problem: Problem, variants: IntArray, dimensions: 
 
 
 def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: ReportProgress) -> IntArray:
-    rows = candidates.best(report)
+    rows = candidates.nondominated_rows(report)
     if len(problem.objectives) == 1:
         return rows
     best = tuple(dict.fromkeys(np.argmin(candidates.values[rows], axis=0).tolist()))
-    return rows[choose_designs(candidates.values[rows], problem.settings.designs, always=best, report=report)]
+    return rows[
+        choose_designs_by_hypervolume(candidates.values[rows], problem.settings.designs, always=best, report=report)
+    ]
 
 
 def columns_of_designs(
@@ -196,7 +204,7 @@ def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status:
         hypervolume=0.0,
         history=tuple(run.round_reports),
         evaluations=sum(evaluator.evaluations for evaluator in evaluators),
-        seconds=run.checkpoints.seconds,
+        seconds=run.checkpoints.elapsed_seconds,
         seed=problem.settings.seed,
         versions=software_versions(),
     )

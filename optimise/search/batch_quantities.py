@@ -48,7 +48,7 @@ def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions:
         values = screen_peaks([inner], mechanism, dimensions, gradients=True)[0]
     else:
         values = inner.evaluate(mechanism, dimensions, gradients=True)
-    return quantity.estimate(mechanism, dimensions, values)
+    return quantity.first_order_estimate(mechanism, dimensions, values)
 
 
 def evaluate_pieces(problem: QuantitySource, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
@@ -86,4 +86,4 @@ def _opposite_pieces(part: Pieces) -> Pieces:
     if part.opposite is not None:
         return part.opposite
     active = (np.argmin if part.least else np.argmax)(part.values, axis=1)
-    return replace(part.take(active[:, None]), least=not part.least)
+    return replace(part.select_pieces(active[:, None]), least=not part.least)

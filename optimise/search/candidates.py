@@ -106,7 +106,7 @@ class Candidates(Table):
             [rows[distant_rows(self.values[rows, column], self.u[rows], self.branch[rows], count)] for rows in groups]
         )
 
-    def by_branch(self, evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
+    def points_by_branch(self, evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
         """Return index and points of each branch that has points."""
         return [
             (index, self.u[self.branch == index][:, : evaluator.dimension])
@@ -158,7 +158,7 @@ class FrontCandidates(Candidates):
         bare, nothing = Candidates.empty(len(span)), np.zeros(0, np.object_)
         return cls(bare.branch, bare.u, bare.values, bare.is_feasible, np.zeros(0), nothing, nothing, span=span)
 
-    def add(self, index: int, part: Polished) -> None:
+    def add_feasible(self, index: int, part: Polished) -> None:
         """Add the polished designs on a branch that are feasible and have all objectives."""
         part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
         branch, is_feasible = np.full(len(part), index), np.ones(len(part), np.bool_)
@@ -166,20 +166,20 @@ class FrontCandidates(Candidates):
         self.replace_content(self.join(FrontCandidates(*columns, span=self.span)))
 
     @property
-    def free(self) -> Mask:
+    def has_free_unknowns(self) -> Mask:
         """Whether the branch has free unknowns."""
         return np.array([slopes.shape[1] > 0 for _, slopes in self.goals], dtype=np.bool_)
 
     def only_enumerated(self, span: Array) -> Self:
         """Return the designs on enumerated branches, whose gradients need no scaling, with another span."""
-        return replace(self[~self.free], span=span)
+        return replace(self[~self.has_free_unknowns], span=span)
 
-    def best(self, report: ReportProgress = ignore_progress) -> IntArray:
+    def nondominated_rows(self, report: ReportProgress = ignore_progress) -> IntArray:
         """Return the non-dominated rows, ascending, thinned out where they hardly differ. report: called for each row.
 
         None of them is as good as another to within `EQUAL` in all objectives and better in one.
         """
-        values, several, free = self.values, len(self.span) > 1, self.free
+        values, several, free = self.values, len(self.span) > 1, self.has_free_unknowns
         range_ = np.ptp(values[nondominated(values)], axis=0) if several and len(values) else self.span
         size = _ROUNDING * np.abs(values).max(axis=0, initial=0.0)
         equal, same, covered = (

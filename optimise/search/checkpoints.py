@@ -176,7 +176,7 @@ class Checkpoints:
         return self._next is not None
 
     @property
-    def seconds(self) -> float:
+    def elapsed_seconds(self) -> float:
         """Time since the search started, s, including the earlier run."""
         return time.perf_counter() - self._start
 
@@ -197,7 +197,7 @@ class Checkpoints:
         """Stop polling and storing, because later computations belong to no step."""
         self._cancelled = self._keep = self._next = None
 
-    def step(
+    def recorded_step(
         self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays], counts: EvaluationCounter
     ) -> Arrays:
         """Return the result of a step: from the earlier run, otherwise computed now.
@@ -242,7 +242,7 @@ class Checkpoints:
         if self._keep is not None and (self._pending or ends) and self._identity is not None:
             words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1
-            self._keep(Record(self._identity, self._number - 1, self.rounds, self.seconds, words))
+            self._keep(Record(self._identity, self._number - 1, self.rounds, self.elapsed_seconds, words))
         self._when = time.perf_counter()
 
 

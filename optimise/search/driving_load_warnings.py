@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.loads.stroke_force import StrokeForce
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import Varying
-from ...model.machine.work_absorption import loads_may_do_work_over_a_turn, with_loads_alone
+from ...model.machine.work_absorption import loads_may_do_work_over_a_turn, without_masses_and_friction
 from ...model.signals.averages import torque_averages
 from ...model.swing.work import net_work_of_loads
 from ...objectives.energy import DELIVERED_WORK
@@ -69,7 +69,7 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
         return net_work_of_loads(machine, problem.motion, designs)
     if not loads_may_do_work_over_a_turn(machine):
         return np.zeros(len(designs))
-    torque = torque_averages(with_loads_alone(machine), designs)
+    torque = torque_averages(without_masses_and_friction(machine), designs)
     mean = np.where(np.abs(torque.mean) > _ROUNDING * torque.rms_over_angle, torque.mean, 0.0)
     return -2.0 * math.pi * cycle_turns(machine) * machine.direction * mean
 

@@ -80,7 +80,7 @@ class EliminationBranch:
     names: tuple[str, ...] = DIMENSIONS
     variant: int = 0
 
-    def dimensions(self, u: Any) -> Any:
+    def designs_at_points(self, u: Any) -> Any:
         """Return designs (n, 3 + v) for points (n, k) in the unit box; NaN where requirements cannot hold.
 
         Columns: crank, rod, offset, m, and extra variables, SI. Complex points give complex designs.
@@ -105,7 +105,7 @@ class EliminationBranch:
             designs[:, column] = unknowns[name]
         return designs
 
-    def coordinates(self, designs: Array) -> Array:
+    def points_of_designs(self, designs: Array) -> Array:
         """Return the points (n, k) in the unit box with the free unknowns of designs (n, 3 + v).
 
         Values outside their range move to the nearer end. A design that meets the eliminated requirements is
@@ -120,7 +120,7 @@ class EliminationBranch:
         """Return the derivatives (n, 3 + v, k) of the designs by the unit-box coordinates, by complex step."""
         n, k = u.shape
         stepped = u[:, None] + 1j * STEP * np.eye(k)
-        slopes = self.dimensions(stepped.reshape(n * k, k)).imag / STEP
+        slopes = self.designs_at_points(stepped.reshape(n * k, k)).imag / STEP
         return np.ascontiguousarray(slopes.reshape(n, k, len(self.names)).transpose(0, 2, 1))
 
 
@@ -138,7 +138,7 @@ def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[E
         replace(branch, steps=steps)
         for variant, part in enumerate(parts)
         for sign, offset in offset_signs(part)
-        for branch in [_eliminate(part, sign, offset, eliminate=eliminate, variant=variant)]
+        for branch in [_build_branch(part, sign, offset, eliminate=eliminate, variant=variant)]
         for steps in itertools.product(*(step.solutions for step in branch.steps))
     )
     return tuple(sorted(branches, key=lambda branch: not branch.free))
@@ -173,7 +173,7 @@ def offset_signs(problem: Problem) -> list[tuple[float, Range]]:
     return signed if side is None else [(sign, sizes) for sign, sizes in signed if sign == side and sizes.upper > 0.0]
 
 
-def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> EliminationBranch:
+def _build_branch(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> EliminationBranch:
     bounds = problem.ranges | {"offset": offset}
     required, restated = _requested_values(problem)
     equations: dict[str, Linear] = {}
@@ -287,11 +287,15 @@ def _closed_rules(required: dict[str, float], *, steady: bool) -> list[Rule]:
         if all(name in required for name in names) and (steady or TIME_RATIO.name not in names):
             rules.append(ClosedRule(origin, target, sources, tuple(required[name] for name in names)))
     # At a ratio of one, the dead centres are opposite for any rod.
-    level = {pair for name, pair in _PAIRS.items() if name in required and _excess_angle(required[name])[1] == 1.0}
+    level = {
+        pair
+        for name, pair in _PAIRS.items()
+        if name in required and _sine_and_cosine_of_excess_angle(required[name])[1] == 1.0
+    }
     return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
 
-def _excess_angle(ratio: float) -> tuple[float, float]:
+def _sine_and_cosine_of_excess_angle(ratio: float) -> tuple[float, float]:
     """Return sine and cosine of the excess angle b for a crank angle ratio."""
     b = math.pi * (ratio - 1.0) / (ratio + 1.0)
     return math.sin(b), math.cos(b)
@@ -302,18 +306,18 @@ def _crank_from_stroke_and_ratio(stroke: float, ratio: float, l: Any) -> Any:
 
     l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
     """
-    cosine = _excess_angle(ratio)[1]
+    cosine = _sine_and_cosine_of_excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - l * l * (1.0 - cosine)) / (1.0 + cosine))
 
 
 def _rod_from_stroke_and_ratio(stroke: float, ratio: float, r: Any) -> Any:
     """Return the rod from the same rule."""
-    cosine = _excess_angle(ratio)[1]
+    cosine = _sine_and_cosine_of_excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
 
 
 def _offset_from_ratio(ratio: float, r: Any, l: Any) -> Any:
-    return geometry.offset_from_excess_angle(r, l, *_excess_angle(ratio))
+    return geometry.offset_from_excess_angle(r, l, *_sine_and_cosine_of_excess_angle(ratio))
 
 
 _PAIRS = {ratio.name: f"{STROKE.name}+{ratio.name}" for ratio in (TIME_RATIO, CRANK_ANGLE_RATIO)}

@@ -18,7 +18,7 @@ from ..problem.constraint_violation import (
     closed_sides,
     constraints_with_floors,
     minimised_values,
-    needs_cycle,
+    needs_computed_cycle,
     relative_violation,
     scaled_excess,
 )
@@ -68,9 +68,9 @@ class Evaluator:
         self.eliminated = tuple(
             restate_constraint(problem, c) for c in problem.constraints if c.quantity in branch.eliminated
         )
-        self.constraints = tuple(sorted(remaining, key=lambda c: needs_cycle(problem.quantity(c.quantity))))
+        self.constraints = tuple(sorted(remaining, key=lambda c: needs_computed_cycle(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in branch.steps))
-        constant = [problem.quantity(objective.quantity).constant for objective in problem.objectives]
+        constant = [problem.quantity(objective.quantity).is_constant for objective in problem.objectives]
         self.constant = () if all(constant) else tuple(np.flatnonzero(constant).tolist())
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
@@ -93,21 +93,21 @@ class Evaluator:
             return constraint
         return replace(constraint, lower=domain.lower + _CLEARANCE)
 
-    def step(self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
+    def recorded_step(self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step; see `Checkpoints.step`."""
-        return self.checkpoints.step(kind, inputs, compute, self)
+        return self.checkpoints.recorded_step(kind, inputs, compute, self)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
-    def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
+    def screen_designs_objectives_violation(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
         """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) for points in the unit box.
 
         The violation is the greatest relative one, infinite where no linkage rotates fully; designs that violate a
         constraint by more than `band` have NaN objectives. Peaks are screened (see
         `model.signals.fast_torque_and_error`).
         """
-        dimensions = self.branch.dimensions(u)
-        rows, values, violation = self.step(
+        dimensions = self.branch.designs_at_points(u)
+        rows, values, violation = self.recorded_step(
             "screening", (u, np.array([band])), lambda: self._screen_designs(dimensions, band)
         )
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
@@ -121,7 +121,7 @@ class Evaluator:
         self.evaluations += len(dimensions)
         # Designs already out of reach need no cycle.
         for slow in (False, True):
-            constraints = [c for c in self.constraints if needs_cycle(self.quantity(c.quantity)) == slow]
+            constraints = [c for c in self.constraints if needs_computed_cycle(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
                 values_by_quantity = self._screened_values(
@@ -173,26 +173,26 @@ class Evaluator:
 
     def can_evaluate(self, u: Array) -> Mask:
         """Return which points give a linkage that rotates fully, or makes the problem's swing."""
-        return np.isfinite(self._geometry_violation(self.branch.dimensions(u)))
+        return np.isfinite(self._geometry_violation(self.branch.designs_at_points(u)))
 
     def violation_without_cycle(self, u: Array) -> Array:
         """Return the greatest violation (n,) of requirements that need no cycle, where `can_evaluate` holds."""
-        dimensions = self.branch.dimensions(u)
+        dimensions = self.branch.designs_at_points(u)
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
             quantity = self.quantity(constraint.quantity)
-            if not needs_cycle(quantity):
+            if not needs_computed_cycle(quantity):
                 values = quantity.evaluate(self.mechanism, dimensions).values
                 violation = np.maximum(violation, relative_violation(constraint, values))
         return violation
 
-    def exact_rows(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
+    def objective_and_constraint_rows(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
         """Return objective rows, empty unless requested, and constraint rows for points where `can_evaluate` holds.
 
         Gradients are with respect to the coordinates of the unit box.
         """
         self.checkpoints.poll()
-        dimensions = self.branch.dimensions(u)
+        dimensions = self.branch.designs_at_points(u)
         jacobian = self.branch.jacobian(u)
         self.evaluations += len(u)
         objectives = self.problem.objectives if goals else ()
@@ -285,7 +285,7 @@ def _deciding_pieces(pieces: Pieces, side: float) -> Pieces:
 
 def _stack_rows(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
     if not parts:
-        return Rows.absent(n, k)
+        return Rows.without_rows(n, k)
     values = np.concatenate([part.values for _, part in parts], axis=1)
     return Rows(
         np.where(np.isnan(values), np.inf, values),

@@ -22,10 +22,10 @@ class _Violations:
     def can_evaluate(self, u: Array) -> Mask:
         return self.inner.can_evaluate(u)
 
-    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
-        _, limits = self.inner.exact_rows(u, goals=False)
+    def objective_and_constraint_rows(self, u: Array) -> tuple[Rows, Rows]:
+        _, limits = self.inner.objective_and_constraint_rows(u, goals=False)
         goals = Rows(limits.values, limits.gradients, limits.labels, np.zeros(len(limits.owner), np.int64))
-        return goals, Rows.absent(*u.shape)
+        return goals, Rows.without_rows(*u.shape)
 
 
 def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int) -> Polished:
@@ -35,7 +35,9 @@ def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int)
     """
     u = u[evaluator.can_evaluate(u)]
     u = u[:: max(1, len(u) // ranked)]
-    best = u[distant_rows(greatest_violations(evaluator, u, starts), u, _single_branch(u), starts)] if len(u) else u
+    best = (
+        u[distant_rows(greatest_violations(evaluator, u, starts), u, _zero_branch_indices(u), starts)] if len(u) else u
+    )
     return polish_recorded(evaluator, best, np.ones(1), viewed_evaluator=_Violations(evaluator))
 
 
@@ -49,14 +51,16 @@ def greatest_violations(evaluator: Evaluator, u: Array, count: int) -> Array:
         violations, bound = np.full(len(u), np.inf), evaluator.violation_without_cycle(u)
         order = np.argsort(bound, kind="stable")
         for rows in np.split(order, range(_BATCH, len(u), _BATCH)):
-            best = distant_rows(violations, u, _single_branch(u), count)
+            best = distant_rows(violations, u, _zero_branch_indices(u), count)
             if len(best) == count and violations[best].max() < bound[rows[0]] - FEASIBLE:
                 break
-            violations[rows] = evaluator.exact_rows(u[rows], goals=False)[1].values.max(axis=1, initial=0.0)
+            violations[rows] = evaluator.objective_and_constraint_rows(u[rows], goals=False)[1].values.max(
+                axis=1, initial=0.0
+            )
         return (violations,)
 
-    return evaluator.step("violation", (u, np.array([count])), greatest)[0]
+    return evaluator.recorded_step("violation", (u, np.array([count])), greatest)[0]
 
 
-def _single_branch(u: Array) -> IntArray:
+def _zero_branch_indices(u: Array) -> IntArray:
     return np.zeros(len(u), np.int64)

@@ -47,7 +47,7 @@ class LeverRule(Rule):
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
         lengths = len(known) - len(self.free)
-        near, far = self._cosines(known[lengths:])
+        near, far = self._cosines_at_extreme_lengths(known[lengths:])
         side = (1.0, -1.0)[self.root]
         if "+" in self.origin:
             (offset,) = known[:lengths]
@@ -68,7 +68,7 @@ class LeverRule(Rule):
             rest = link * link - offset * offset - wanted * wanted
         return half + side * np.sqrt(half * half - rest)
 
-    def _cosines(self, free: tuple[Any, ...]) -> tuple[Any, Any]:
+    def _cosines_at_extreme_lengths(self, free: tuple[Any, ...]) -> tuple[Any, Any]:
         """Return the cosines of psi at the least and at the greatest length."""
         angles: list[Any] = list(self.angles)
         for place, angle in zip(self.free, free, strict=True):
@@ -134,11 +134,11 @@ def lever_rules(problem: Problem, required: Mapping[str, float]) -> Iterator[Rul
                 yield LeverRule(origin, "offset", ("crank", "rod", *names), values, *swing)
     for pair in itertools.combinations((_LEAST, _GREATEST, _RATIO, _TRAVEL), 2):
         if all(name in required for name in pair):
-            lengths = _lengths({name: required[name] for name in pair})
+            lengths = _extreme_cylinder_lengths({name: required[name] for name in pair})
             yield LeverRule("+".join(pair), "crank", ("offset", *names), lengths, *swing)
 
 
-def _lengths(required: Mapping[str, float]) -> tuple[float, float]:
+def _extreme_cylinder_lengths(required: Mapping[str, float]) -> tuple[float, float]:
     """Return the least and the greatest length, m, from two requirements."""
     least, greatest = required.get(_LEAST), required.get(_GREATEST)
     ratio, travel = required.get(_RATIO), required.get(_TRAVEL)

@@ -21,8 +21,8 @@ import numpy as np
 
 from ...model.swing.end_angles import swing_start_column
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
-from ...objectives.formula.expression import SIZE, Linear, linear_unknown
-from ...objectives.formula.quantity import FormulaQuantity, equation_of
+from ...objectives.formula.expression import SIZE, Linear, linear_form_of_unknown
+from ...objectives.formula.quantity import FormulaQuantity, linear_equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET
 from ...objectives.quantity import Quantity
 from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE
@@ -74,9 +74,9 @@ def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[st
     """
     equations: dict[str, Linear] = {}
     for quantity, value in required.items():
-        equation = equation_of(quantity, value) if isinstance(quantity, FormulaQuantity) else None
+        equation = linear_equation_of(quantity, value) if isinstance(quantity, FormulaQuantity) else None
         if equation is not None:
-            equations[quantity.name] = with_offset_size(equation, sign)
+            equations[quantity.name] = in_terms_of_offset_magnitude(equation, sign)
     if not equations:
         return {}
     for quantity, value in required.items():
@@ -86,15 +86,15 @@ def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[st
     return equations
 
 
-def with_offset_size(row: Linear, sign: float) -> Linear:
+def in_terms_of_offset_magnitude(row: Linear, sign: float) -> Linear:
     """Return an equality in terms of |offset|, given the sign of the offset."""
     size = Linear((("offset", Fraction(1)),), Fraction(0))
     rewritten = Linear((), row.constant)
     for name, factor in row.factors:
         if name == "offset":
-            rewritten = rewritten.plus(size, Fraction(int(sign)) * factor)
+            rewritten = rewritten.plus_multiple_of(size, Fraction(int(sign)) * factor)
         else:
-            rewritten = rewritten.plus(size if name == SIZE else linear_unknown(name), factor)
+            rewritten = rewritten.plus_multiple_of(size if name == SIZE else linear_form_of_unknown(name), factor)
     return rewritten
 
 
@@ -120,7 +120,7 @@ def equation_blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> It
         yield NOTHING
         return
     for targets in itertools.combinations(loose, len(rows)):
-        solved = _solve_for(rows, targets)
+        solved = _solve_rows_for_targets(rows, targets)
         if solved is not None:
             yield Block(tuple(origins), targets, solved)
 
@@ -145,23 +145,27 @@ def evaluate_linear_rule(*numbers: Any) -> Any:
 
 def _linear_proportion(quantity: Quantity, value: float) -> Linear | None:
     """Return a proportion as a linear equality; None for any other quantity."""
-    rod, crank, offset = linear_unknown("rod"), linear_unknown("crank"), linear_unknown("offset")
+    rod, crank, offset = (
+        linear_form_of_unknown("rod"),
+        linear_form_of_unknown("crank"),
+        linear_form_of_unknown("offset"),
+    )
     if quantity.name == ROD_TO_OFFSET.name:
-        return rod.plus(offset, -Fraction(value))
+        return rod.plus_multiple_of(offset, -Fraction(value))
     if quantity.name == ROD_TO_CRANK.name:
-        return rod.plus(crank, -Fraction(value))
+        return rod.plus_multiple_of(crank, -Fraction(value))
     if quantity.name == TRANSMISSION_ANGLE.name:
-        return crank.plus(offset).plus(rod, -Fraction(math.cos(value)))
+        return crank.plus_multiple_of(offset).plus_multiple_of(rod, -Fraction(math.cos(value)))
     return None
 
 
 def _eliminate_name(row: Linear, pivot: Linear, name: str) -> Linear:
     """Return an equality minus the multiple of another one that eliminates a name."""
     factor = dict(row.factors).get(name)
-    return row if factor is None else row.plus(pivot, -factor / dict(pivot.factors)[name])
+    return row if factor is None else row.plus_multiple_of(pivot, -factor / dict(pivot.factors)[name])
 
 
-def _solve_for(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
+def _solve_rows_for_targets(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
     """Return the equalities with one target in each; None if they do not determine the targets."""
     left, solved = list(rows), list[Linear]()
     for target in targets:
@@ -221,7 +225,7 @@ def _root_signs(root: int) -> tuple[float, float]:
     return (1.0, -1.0)[root % 2], (1.0, -1.0)[root // 2]
 
 
-def _crank_pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tuple[Any, Any, Any, Any]:
+def _crank_pins_less_travel(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tuple[Any, Any, Any, Any]:
     """Return the crank pin at the start, and at the end moved back by the travel."""
     first, last = ends
     way = _root_signs(root)[0]
@@ -231,7 +235,7 @@ def _crank_pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tupl
 def _rod_from_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
-    x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
+    x_0, y_0, x_1, y_1 = _crank_pins_less_travel(root, travel, _swing_ends(start, end, follows, free), r)
     e = sign * a
     x = 0.5 * (x_1 + x_0) + 0.5 * (y_1 - y_0) * (y_1 + y_0 - 2.0 * e) / (x_1 - x_0)
     return np.sqrt((x_0 - x) ** 2 + (y_0 - e) ** 2)
@@ -240,7 +244,7 @@ def _rod_from_travel(
 def _offset_from_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, l: Any, *free: Any
 ) -> Any:
-    x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
+    x_0, y_0, x_1, y_1 = _crank_pins_less_travel(root, travel, _swing_ends(start, end, follows, free), r)
     square = (x_1 - x_0) ** 2 + (y_1 - y_0) ** 2
     away = _root_signs(root)[1] * np.sqrt(l * l / square - 0.25)
     return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))

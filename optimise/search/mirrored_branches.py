@@ -11,7 +11,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.cylinder_machines import is_treated_as_shaft
+from ...model.machine.cylinders_as_machines import has_cylinders_or_speed_profile
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
@@ -75,7 +75,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
         or machine.friction.acts
     ):
         return True
-    if is_treated_as_shaft(part.mechanism):
+    if has_cylinders_or_speed_profile(part.mechanism):
         return True
     if not all(load.is_conservative for load in machine.loads):
         return True  # a difference at only some crank angles would show in only some designs
@@ -101,7 +101,7 @@ def _may_distinguish_mirror_images(quantity: Quantity) -> bool:
 
     Every custom quantity of a job may distinguish them, except formulas without the offset's sign.
     """
-    if quantity.constant:
+    if quantity.is_constant:
         return False
     if isinstance(quantity, FormulaQuantity):
         return quantity.has_signed_offset or any(map(_may_distinguish_mirror_images, quantity.parts))

@@ -29,7 +29,7 @@ class Rows:
     constant: tuple[int, ...] = ()
 
     @classmethod
-    def absent(cls, n: int, k: int) -> Rows:
+    def without_rows(cls, n: int, k: int) -> Rows:
         """Return an empty set of rows for n designs in k unknowns."""
         return cls(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 

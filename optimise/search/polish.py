@@ -57,7 +57,7 @@ class Evaluates(Protocol):
         """Return which points can be evaluated."""
         ...
 
-    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
+    def objective_and_constraint_rows(self, u: Array) -> tuple[Rows, Rows]:
         """Return objective rows and constraint rows."""
         ...
 
@@ -106,10 +106,10 @@ class _Batch:
         self.loss = np.full((n, len(scale)), LOSS)
         self.roots = np.tile(np.eye(k), (n, 1, 1))
         """Roots of the Hessians; see `polish_programme.transposed_inverse_roots`."""
-        self._begin()
+        self._evaluate_start()
         self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
 
-    def _begin(self) -> None:
+    def _evaluate_start(self) -> None:
         n, k = self.u.shape
         self.open = np.full(n, k > 0)
         self.stalls = np.zeros(n, dtype=np.int64)
@@ -125,7 +125,7 @@ class _Batch:
                 break
             steps = [self._solve_programme(row, ()).move for row in outside.tolist()]
             self._try_steps(outside, np.array(steps), (), second_order=False)
-        self._begin()
+        self._evaluate_start()
 
     def take_step(self) -> bool:
         """Take one step with every open design; return whether any was open."""
@@ -176,7 +176,7 @@ class _Batch:
         return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)
 
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
-        goals, limits = self.evaluator.exact_rows(u)
+        goals, limits = self.evaluator.objective_and_constraint_rows(u)
         factor = 1.0 / self.scale[goals.owner]
         return replace(goals, values=goals.values * factor, gradients=goals.gradients * factor[:, None]), limits
 
@@ -199,20 +199,20 @@ class _Batch:
     def _solve_programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
         goals, limits = rows_of_designs(self.goals, row), rows_of_designs(self.limits, row)
-        first = step = self._solve(row, goals, limits, chosen)
+        first = step = self._solve_row_step(row, goals, limits, chosen)
         light = self.weight[row]
         while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
             self.weight[row] *= 10.0
-            step = self._solve(row, goals, limits, chosen)
-        if self.weight[row] > light and _violation_after(limits, step.move) > max(
-            0.5 * _violation_after(limits, first.move), ROUNDING
+            step = self._solve_row_step(row, goals, limits, chosen)
+        if self.weight[row] > light and _violation_after_step(limits, step.move) > max(
+            0.5 * _violation_after_step(limits, first.move), ROUNDING
         ):
             # No step within the radius removes the violation, so more weight would only stiffen the next steps.
             self.weight[row] = light
             return first
         return step
 
-    def _solve(self, row: int, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Step:
+    def _solve_row_step(self, row: int, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Step:
         return solve_step(
             self.u[row],
             goals,
@@ -312,7 +312,7 @@ class _Batch:
                 (rows_of_designs(self.limits, row), limits),
             )
         ]
-        return self._solve(row, goals, limits, chosen).move
+        return self._solve_row_step(row, goals, limits, chosen).move
 
 
 def make_convex(hessian: Array, normals: Array) -> Array:
@@ -336,7 +336,7 @@ def make_convex(hessian: Array, normals: Array) -> Array:
     return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
 
 
-def _violation_after(limits: Rows, move: Array) -> float:
+def _violation_after_step(limits: Rows, move: Array) -> float:
     """Return the greatest violation after a step, to first order."""
     near = np.isfinite(limits.values)
     return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))

@@ -97,7 +97,7 @@ def solve_step(u: Array, goals: Rows, limits: Rows, root: Array, *, radius: floa
     rows[upper_bounds, :k], rows[lower_bounds, :k] = edge, -edge
     weights = np.empty(count + holding + 1)
     weights[:count], weights[count:-1], weights[-1] = 1.0, loss[list(chosen)] if hold else (), violation
-    move, dual = _least_distance(rows, bounds, root, weights)
+    move, dual = _solve_least_distance(rows, bounds, root, weights)
     is_binding = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
     limit_weight[near] = dual[limiting]
@@ -126,7 +126,7 @@ def transposed_inverse_roots(hessians: Array) -> Array:
     return np.linalg.inv(np.linalg.cholesky(hessians)).transpose(0, 2, 1)
 
 
-def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> tuple[Array, Array]:
+def _solve_least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> tuple[Array, Array]:
     """Return d and the multipliers of all rows; zeros if rounding leaves no solution."""
     k, size = len(root), rows.shape[1]
     scale = np.zeros((size, size))  # z = scale x + shift

@@ -39,7 +39,7 @@ def polish_recorded(
     return _recorded_polish(evaluator, "polish", inputs, compute)
 
 
-def project_recorded(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
+def move_onto_constraints_recorded(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
     """Return designs from `start` (n, k), only moved onto violated constraints by the shortest step."""
     return _recorded_polish(
         evaluator, "projection", (start, scale), lambda: polish_on_engine(evaluator, start, scale, iterations=None)
@@ -99,7 +99,9 @@ def _recorded_polish(
             np.concatenate([np.zeros((0, k)), *result.active]),
         )
 
-    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.step(kind, inputs, arrays)
+    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.recorded_step(
+        kind, inputs, arrays
+    )
     n, ends = len(pieces), np.cumsum(pieces)[:-1]
     goals = zip(np.split(owners, ends), np.split(slopes, ends), strict=True)
     active_rows = np.split(active, np.cumsum(edges)[:-1])

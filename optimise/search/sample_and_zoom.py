@@ -21,7 +21,7 @@ from .checkpoints import Checkpoints
 from .evaluation import Evaluator
 from .least_violation import least_violation
 from .recorded_polish import polish_recorded
-from .sampling import first_samples, random_generator, sample_near
+from .sampling import first_samples, random_generator, sample_near_parents
 
 FIRST = 16384
 """Number of designs in the first round, everywhere."""
@@ -66,12 +66,12 @@ class Archive(Candidates):
         """Screen points of several branches, then compare them with the archive once, which takes most of the time."""
         fresh: list[Candidates] = []
         for index, evaluator, u in points:
-            _, values, violation = evaluator.screen(u, band=self.band)
+            _, values, violation = evaluator.screen_designs_objectives_violation(u, band=self.band)
             good = violation <= self.band + FEASIBLE
             is_feasible = violation <= FEASIBLE
             self.feasible += int(is_feasible.sum())
             fresh.append(Candidates(np.full(int(good.sum()), index), u[good], values[good], is_feasible[good]))
-        self.add(*fresh)
+        self.add_designs(*fresh)
         return sum(map(len, fresh))
 
     def add_points(self, index: int, u: Array, values: Array, is_feasible: Mask | None = None) -> None:
@@ -80,13 +80,13 @@ class Archive(Candidates):
         is_feasible: (n,), which points meet every constraint, by default all; the others are close enough to move
         there.
         """
-        self.add(
+        self.add_designs(
             Candidates(
                 np.full(len(u), index), u, values, np.ones(len(u), np.bool_) if is_feasible is None else is_feasible
             )
         )
 
-    def add(self, *tables: Candidates) -> None:
+    def add_designs(self, *tables: Candidates) -> None:
         """Add designs from any branch."""
         together = self.join(*tables)
         rows = _candidate_rows_to_keep(together)
@@ -153,7 +153,7 @@ class Run:
             0 if self.previous is None else self.previous._earlier_rounds + len(self.previous.round_reports)
         )
 
-    def plan_rounds(self, count: int) -> None:
+    def expect_rounds(self, count: int) -> None:
         """Expect this many further rounds."""
         self.rounds = len(self.round_reports) + count
 
@@ -177,9 +177,9 @@ class Run:
             self._earlier_rounds + len(self.round_reports) + 1,
             self._planned_rounds(len(self.round_reports) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.enumerated)),
-            archive.feasible + int((~self.candidates.free).sum()),
+            archive.feasible + int((~self.candidates.has_free_unknowns).sum()),
             self._growth.add(feasible) if self.progress or self.stages else 0.0,
-            self.checkpoints.seconds,
+            self.checkpoints.elapsed_seconds,
         )
         self.round_reports.append(entry)
         self.checkpoints.polled = None
@@ -187,7 +187,7 @@ class Run:
             _evenly_spread_values(feasible).copy()
         )  # a copy, because a view would keep all of them in memory
         if self.checkpoints.end_round():
-            self._report(entry, self.progress)
+            self._call_listener(entry, self.progress)
         else:
             self.report_stage(stage, 0, 1)
 
@@ -221,8 +221,8 @@ class Run:
         if self.checkpoints.rounds < self.checkpoints.earlier_rounds or self.checkpoints.replaying:
             stage, done, total = REPEATING, self.checkpoints.repeated, self.checkpoints.resumed
         last = self.round_reports[-1] if self.round_reports else Progress(stage, 0, 0, 0, 0, 0.0, 0.0)
-        rounds, seconds = self._planned_rounds(len(self.round_reports)), self.checkpoints.seconds
-        self._report(
+        rounds, seconds = self._planned_rounds(len(self.round_reports)), self.checkpoints.elapsed_seconds
+        self._call_listener(
             replace(last, stage=stage, rounds=rounds, seconds=seconds, step=done, steps=max(done, total)), self.stages
         )
 
@@ -230,7 +230,7 @@ class Run:
         """Number of planned rounds, with those of earlier runs."""
         return self._earlier_rounds + max(self.rounds, at_least)
 
-    def _report(self, entry: Progress, listener: Callback | None) -> None:
+    def _call_listener(self, entry: Progress, listener: Callback | None) -> None:
         if listener is not None:
             listener(entry)
         self._last_report = time.monotonic()
@@ -266,13 +266,13 @@ def enumerate_branches(problem: Problem, evaluators: list[Evaluator], run: Run) 
     for place, evaluator in enumerate(run.enumerated):
         run.checkpoints.poll()
         if evaluator.can_evaluate(point)[0]:
-            candidates.add(len(free) + place, polish_recorded(evaluator, point, candidates.span))
+            candidates.add_feasible(len(free) + place, polish_recorded(evaluator, point, candidates.span))
         if (place + 1) % _ROUND == 0 or place + 1 == len(run.enumerated):
             run.report_round("enumerating", free, Archive.empty(len(problem.objectives)))
     return candidates
 
 
-def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
+def sample_and_zoom(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
     """Return the archive of non-dominated screened designs: first samples, then zooms."""
     run = run or Run(problem, 1 + len(WIDTHS))
     archive = run.archive = Archive.empty(len(problem.objectives))
@@ -294,11 +294,11 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             break
     run.report_round("sampling", evaluators, archive)
     if len(archive):
-        zoom(problem, evaluators, archive, run)
+        zoom_into_sparse_parts(problem, evaluators, archive, run)
     return archive
 
 
-def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> None:
+def zoom_into_sparse_parts(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> None:
     """Sample around sparse parts of the front, more closely in every round."""
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
@@ -320,7 +320,7 @@ def _samples_around(
     """Return points around the parents on a branch, in proportion to its fraction of all parents."""
     on_branch = parents.branch == index
     count = max(1, int(samples * on_branch.mean()))
-    return sample_near(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
+    return sample_near_parents(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
 
 
 def descents_stay_infeasible(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:

@@ -29,7 +29,7 @@ _FIRST: tuple[tuple[int, tuple[int, ...]], ...] = (
 )
 
 
-def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
+def sobol_points(power: int, dimension: int, random: np.random.Generator) -> Array:
     """Return 2^power points in the unit box (n, k). random: spawns the generator that scrambles them."""
     if dimension > len(_FIRST):
         from scipy.stats import qmc
@@ -100,12 +100,12 @@ def first_samples(
         return np.zeros((1, 0))
     random = random_generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
-    points = sobol(power, dimension, random)[:count]
+    points = sobol_points(power, dimension, random)[:count]
     snapped = random.random(points.shape) < boundary_share
     return np.asarray(np.where(snapped, np.round(points), points))
 
 
-def sample_near(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
+def sample_near_parents(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
     """Return `count` points near parents (n, k), more of them near parents with distant neighbours on the front.
 
     values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound usually

@@ -68,7 +68,7 @@ def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[A
     evaluator = Evaluator(part, branch)
     points = first_samples(count, len(branch.free), 0, 0)
     points = points[evaluator.can_evaluate(points)]
-    return branch.dimensions(points), evaluator.violation_without_cycle(points)
+    return branch.designs_at_points(points), evaluator.violation_without_cycle(points)
 
 
 def _has_feasible(tried: tuple[Array, Array]) -> bool:

@@ -32,7 +32,7 @@ from ...model.cycle.multi_cylinder import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
-from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
+from ...model.machine.cylinders_as_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.optional_packages import import_extra
@@ -41,7 +41,7 @@ from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from .input_words import Measure
-from .shaking_rows import first_moment_of_moving_parts, rms_shaking_rows, shaking_rows, with_masses
+from .shaking_rows import first_moment_of_moving_parts, rms_shaking_rows, shaking_rows, with_balance_masses
 
 ROUNDS = 60
 _START = 24  # crank angles per turn in the first round
@@ -189,8 +189,8 @@ class _Programme:
         """Return the balance with the counterweight at a radius, m."""
         angles = np.linspace(0.0, 2.0 * math.pi, _START, endpoint=False)
         for count in range(1, ROUNDS + 1):
-            x, bound, saving = self._cone(angles)
-            after = with_masses(self.mechanism, self.linkage, x, radius)
+            x, bound, saving = self._solve_cone_programme(angles)
+            after = with_balance_masses(self.mechanism, self.linkage, x, radius)
             fresh = self._angles_of_higher_peaks(x, angles, after) if self.measure == "peak" else np.empty(0)
             if not len(fresh) or count == ROUNDS:
                 break
@@ -214,7 +214,7 @@ class _Programme:
             not len(fresh),
         )
 
-    def _cone(self, angles: Array) -> tuple[Array, float, float]:
+    def _solve_cone_programme(self, angles: Array) -> tuple[Array, float, float]:
         """Return x (6,), the least objective, N, for peaks at only these angles, and the price of `most`, N/(kg m)."""
         cp = import_extra("cvxpy", "balancing a counterweight needs")
         z = cp.Variable(self.count)
@@ -247,9 +247,9 @@ class _Programme:
         x[: self.count] = z.value * self.unit[: self.count]
         tight = self.greatest_moment is not None and math.hypot(x[0], x[1]) > self.greatest_moment * (1.0 - 1e-6)
         price = held[0].dual_value * self.force / self.unit[0] if tight else 0.0
-        return self._with_lightest_rod_balance(self._clip(x)), float(problem.value * self.force), float(price)
+        return self._with_lightest_rod_balance(self._clip_to_bounds(x)), float(problem.value * self.force), float(price)
 
-    def _clip(self, x: Array) -> Array:
+    def _clip_to_bounds(self, x: Array) -> Array:
         """Return x moved within its bounds, which the solver's rounding may have left."""
         if self.greatest_moment is not None:
             x[:2] *= min(1.0, self.greatest_moment / max(math.hypot(x[0], x[1]), 1e-300))

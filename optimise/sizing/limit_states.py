@@ -221,13 +221,13 @@ def joint_load_terms(joints: JointLoads, material: Material, limits: SectionLimi
         return load.amplitude / material.endurance + load.mean / mean
 
     terms = {
-        "rod": joints.rod.peak,
+        "rod": joints.rod.greatest_magnitude,
         "rod compression": max(0.0, -joints.rod.least),
         "rod fatigue": fatigue(joints.rod),
-        "crank": joints.crank.peak,
+        "crank": joints.crank.greatest_magnitude,
         "crank compression": max(0.0, -joints.crank.least),
         "crank fatigue": fatigue(joints.crank),
-        "bending": joints.bending.peak,
+        "bending": joints.bending.greatest_magnitude,
         "bending fatigue": fatigue(joints.bending),
         "crank pivot": joints.crank_pivot,
         "crank pin": joints.crank_pin,

@@ -28,16 +28,16 @@ class ErrorRows:
     def __init__(self, mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float, kind: Kind) -> None:
         self.mechanism, self.linkage, self.limit = mechanism, linkage, limit
         self.power = 1 if kind == "worst case" else 2
-        self.names = tuple(costs.by_name)
+        self.names = tuple(costs.costs_by_name)
         self._chosen = [NAMES.index(name) for name in self.names]
         self._given = limits_of_sources(mechanism, linkage)
         self._given[self._chosen] = 0.0
         self.start = np.mod(np.concatenate(angle_ranges_where_error_counts(mechanism, linkage, count=_START)), _TURN)
         self.scale = np.ones(len(self._chosen))
-        share = 1.0 / (len(self._chosen) * self.rows(self.start)[0].max(axis=0))
-        self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.by_name.values()]) ** self.power)
+        share = 1.0 / (len(self._chosen) * self.rows_at_angles(self.start)[0].max(axis=0))
+        self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.costs_by_name.values()]) ** self.power)
 
-    def rows(self, angles: Array) -> tuple[Array, Array]:
+    def rows_at_angles(self, angles: Array) -> tuple[Array, Array]:
         """Return the coefficients (m, n) of x and the remaining limit (m,) at crank angles (m,), rad."""
         parts = (np.abs(source_influences(self.mechanism, self.linkage, angles)) / self.limit) ** self.power
         return parts[self._chosen].T * self.scale, 1.0 - self._given**self.power @ parts
@@ -50,17 +50,17 @@ class ErrorRows:
         """Return the tolerances (n,), m and rad, for x."""
         return np.asarray((x * self.scale) ** (1.0 / self.power))
 
-    def machine(self, x: Array) -> Mechanism:
+    def mechanism_with_tolerances(self, x: Array) -> Mechanism:
         """Return the mechanism with the tolerances for x."""
         machine_tolerances: dict[str, Any] = {
             name: Tolerance(absolute=float(value)) for name, value in zip(self.names, self.tolerances(x), strict=True)
         }
         return replace(self.mechanism, tolerances=replace(self.mechanism.tolerances, **machine_tolerances))
 
-    def peaks(self, x: Array) -> tuple[Array, Array]:
+    def error_peaks(self, x: Array) -> tuple[Array, Array]:
         """Return the exact local peaks (k,) over the counted angles, highest first, and their crank angles, rad."""
         signal = Signal.POSITION_ERROR if self.power == 1 else Signal.POSITION_ERROR_RSS
         design = np.array([[self.linkage.crank, self.linkage.rod, self.linkage.offset]], dtype=np.float64)
-        found = find_peaks(self.machine(x), signal, design)
+        found = find_peaks(self.mechanism_with_tolerances(x), signal, design)
         there = np.isfinite(found.values[0])
         return (found.values[0, there] / self.limit) ** self.power, found.angles[0, there]

@@ -17,7 +17,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
@@ -45,7 +45,7 @@ class Range:
         return 0.5 * abs(self.greatest + self.least)
 
     @property
-    def peak(self) -> float:
+    def greatest_magnitude(self) -> float:
         """The greatest size."""
         return max(self.greatest, -self.least, 0.0)
 

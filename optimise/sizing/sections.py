@@ -21,7 +21,7 @@ from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.clearance import Bar, require_frictionless
-from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
+from ...model.machine.cylinders_as_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.mechanism import Material, Mechanism
 from ...model.optional_packages import import_extra
 from ..problem.tolerance_costs import SectionLimits
@@ -101,7 +101,9 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
             radius = 0.5 * min(radius, change)  # two crank angles alternate as the worst
         before = change if iteration else math.inf
     sizes = task.widen_eyes(sizes)
-    states = {name: state for name, state in task.states(sizes).items() if not name.endswith(AMPLIFICATION)}
+    states = {
+        name: state for name, state in task.limit_states_of_sizes(sizes).items() if not name.endswith(AMPLIFICATION)
+    }
     # If a bar buckles, its stress is infinite; the buckling limit shows the extent.
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
     if states[worst] > 1.0 + _OVER:
@@ -110,7 +112,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
             "of the permissible value; widen the ranges of width and depth, reduce the speed, or choose a stronger "
             "material"
         )
-    crank, rod = task.bars(sizes)
+    crank, rod = task.crank_and_rod_bars(sizes)
     return Sections(
         crank=crank,
         rod=rod,
@@ -132,19 +134,19 @@ class _Task:
     limits: SectionLimits
     whip: Whip
 
-    def bars(self, sizes: Array) -> tuple[Bar, Bar]:
+    def crank_and_rod_bars(self, sizes: Array) -> tuple[Bar, Bar]:
         """Return the crank and the rod."""
         w, d, v, e = np.exp(sizes).tolist()
         density = self.material.density
         return Bar(width=w, depth=d, density=density), Bar(width=v, depth=e, density=density)
 
-    def states(self, sizes: Array) -> dict[str, float]:
+    def limit_states_of_sizes(self, sizes: Array) -> dict[str, float]:
         """Return the limit states of sizes with their own loads."""
         return self.limit_states(np.exp(sizes).tolist(), [None, None], self.joint_load_terms(sizes))
 
     def joint_load_terms(self, sizes: Array) -> dict[str, float]:
         """Return the terms of the joint loads for these sizes."""
-        crank, rod = self.bars(sizes)
+        crank, rod = self.crank_and_rod_bars(sizes)
         joints = joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
         return joint_load_terms(joints, self.material, self.limits)
 
@@ -169,7 +171,7 @@ class _Task:
         widths = np.exp(sizes)
         for _ in range(_ROUNDS):
             wider = widths.copy()
-            for name, state in self.states(np.log(widths)).items():
+            for name, state in self.limit_states_of_sizes(np.log(widths)).items():
                 kind, _, pin = name.partition(" at the ")
                 width, hole = 2 * kind.startswith("rod"), holes.get(pin, 0.0)
                 if pin and "bearing" not in kind and 1.0 + _ROUNDING < state < math.inf and widths[width] > hole:

@@ -72,7 +72,7 @@ def rms_shaking_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Arr
     return reduced[0], reduced[1]
 
 
-def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:
+def with_balance_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:
     """Return the mechanism with its counterweight replaced by one at a radius, m, and with a mass on the rod.
 
     x: (6,), as in `NAMES`; the rod then becomes a `RigidLink` of that length.

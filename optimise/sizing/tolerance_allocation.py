@@ -133,14 +133,14 @@ class _Programme:
     """The programme in x, with the limit as 1."""
 
     def __init__(self, rows: ErrorRows, costs: Costs) -> None:
-        self.error, self.costs = rows, list(costs.by_name.values())
+        self.error, self.costs = rows, list(costs.costs_by_name.values())
         self.least, self.greatest, at = (
             rows.scale_tolerances(np.array([getattr(cost, name) for cost in self.costs]))
             for name in ("least", "greatest", "at")
         )
         self.q = np.array([cost.exponent for cost in self.costs]) / rows.power
         self.beta = np.array([cost.cost for cost in self.costs]) * at**self.q
-        floor, limit = rows.peaks(self.least)[0].max(), 1e3 * rows.limit
+        floor, limit = rows.error_peaks(self.least)[0].max(), 1e3 * rows.limit
         if not floor < 1.0:
             raise InfeasibleError(
                 "the limit must exceed the position error with the smallest tolerances; got "
@@ -151,8 +151,8 @@ class _Programme:
     def solve(self) -> Allocation:
         angles = self.error.start
         for count in range(1, ROUNDS + 1):
-            x, carried = self._cone(angles)
-            values, at = self.error.peaks(x)
+            x, carried = self._solve_cone_programme(angles)
+            values, at = self.error.error_peaks(x)
             rough = self._collect_multipliers_at_peaks(x, angles, carried, at[values > 1.0 - _NEAR])
             point = self._solve_optimality_conditions(rough) if values.max() <= 1.0 + _NEAR else None
             if point is not None or values.max() <= 1.0 + _EXCESS or count == ROUNDS:
@@ -161,10 +161,10 @@ class _Programme:
             angles = np.concatenate([angles, at[values > 1.0]])
         raise AssertionError("the last round returns")
 
-    def _cone(self, angles: Array) -> tuple[Array, Array]:
+    def _solve_cone_programme(self, angles: Array) -> tuple[Array, Array]:
         """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
         cp = import_extra("cvxpy", "tolerance allocation needs")
-        rows, margin = self.error.rows(angles)
+        rows, margin = self.error.rows_at_angles(angles)
         size = float(self.beta.sum())
         x = cp.Variable(len(self.beta))
         terms = zip(self.beta / size, x, -self.q, strict=True)
@@ -194,7 +194,7 @@ class _Programme:
         return self._evaluate_point(x, at[active], multipliers[active])
 
     def _evaluate_point(self, x: Array, angles: Array, multipliers: Array) -> _Point:
-        pull = multipliers @ self.error.rows(angles)[0] if len(angles) else np.zeros(len(x))
+        pull = multipliers @ self.error.rows_at_angles(angles)[0] if len(angles) else np.zeros(len(x))
         push = self.q * self.beta * x ** (-self.q - 1.0)
         inside = (x > self.least * (1.0 + _AT_BOUND)) & (x < self.greatest * (1.0 - _AT_BOUND))
         residual = np.abs(pull / push - 1.0)[inside].max(initial=0.0)
@@ -213,12 +213,12 @@ class _Programme:
         def unpack(z: Array) -> tuple[Array, Array]:
             here = pinned.copy()
             here[free] *= np.exp(z[:count])
-            found = self.error.peaks(here)[1]
+            found = self.error.error_peaks(here)[1]
             return here, found[_nearest_angles(start.angles, found)]
 
         def conditions(z: Array) -> Array:
             here, where = unpack(z)
-            rows, margin = self.error.rows(where)
+            rows, margin = self.error.rows_at_angles(where)
             pull = (weight * (1.0 + z[count:])) @ rows
             push = self.q * self.beta * here ** (-self.q - 1.0)
             return np.concatenate([(pull / push - 1.0)[free], rows @ here - margin])
@@ -235,12 +235,12 @@ class _Programme:
             and np.all((here >= self.least) & (here <= self.greatest))
             and np.all(point.slope[low] >= 0.0)
             and np.all(point.slope[high] <= 0.0)
-            and self.error.peaks(here)[0].max() <= 1.0 + _SOLVED
+            and self.error.error_peaks(here)[0].max() <= 1.0 + _SOLVED
         )
         return point if met else None
 
     def _allocation(self, point: _Point, rounds: int) -> Allocation:
-        greatest = float(self.error.peaks(point.x)[0].max())
+        greatest = float(self.error.error_peaks(point.x)[0].max())
         tolerances = self.error.tolerances(point.x)
         parts = []
         for name, cost, t, x, slope in zip(self.error.names, self.costs, tolerances, point.x, point.slope, strict=True):
@@ -257,7 +257,7 @@ class _Programme:
             self.error.limit,
             tuple(parts),
             math.fsum(part.cost for part in parts),
-            self.error.machine(point.x),
+            self.error.mechanism_with_tolerances(point.x),
             self.error.limit * greatest ** (1.0 / self.error.power),
             float(savings.sum()),
             point.angles[order],

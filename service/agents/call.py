@@ -147,7 +147,7 @@ def tables_with_files(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
     return with_file_contents(tables, files)
 
 
-def printed_text(show: Callable[[Console], None]) -> str:
+def text_printed_by(show: Callable[[Console], None]) -> str:
     """Return the output of a function that writes to a console, as plain text."""
     from rich.console import Console
 

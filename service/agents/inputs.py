@@ -17,7 +17,7 @@ from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import SUBJECTS
 from ..designs.columns import find_column
 from ..designs.design_selection_options import require_single_choice
-from ..designs.stored_designs import front_of, stored_design
+from ..designs.stored_designs import front_of_result, stored_design
 from ..presets.jobs import shipped_jobs
 from ..questions.compare.runs import ComparedRun, compared_run
 from ..questions.discovery import (
@@ -138,7 +138,7 @@ class Design:
         return call.problem(tables_with_files(self.job, self.files), feasible=False)
 
     @property
-    def lengths(self) -> dict[str, str]:
+    def given_lengths(self) -> dict[str, str]:
         """The given lengths."""
         return {name: length for name in DIMENSIONS if (length := getattr(self, name)) is not None}
 
@@ -153,7 +153,7 @@ class Design:
         if self.design is not None:
             require_single_choice(self.design, result, has_other_choice=False)
             row = self.design - 1
-        return folder, front_of(call.problem_of_run(folder, result), result), row
+        return folder, front_of_result(call.problem_of_run(folder, result), result), row
 
     def compared_runs(self, call: Call) -> list[ComparedRun]:
         """Return several runs. Raises `InputError` for a single run or a job."""
@@ -162,7 +162,7 @@ class Design:
         return [compared_run(*call.load_run(name)) for name in self.runs]
 
     def _require_no_lengths(self) -> None:
-        for name in self.lengths:
+        for name in self.given_lengths:
             raise InputError(
                 f"dimensions must not be given with a run, whose designs have their own; got run and {name}; "
                 "leave out one of the two"
@@ -178,7 +178,7 @@ class Design:
 
     def _machine_of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_with_files(self.job or {}, self.files), feasible=False)
-        return Machine(problem.mechanism.nominal, Dimensions(**self.lengths).linkage(problem, str), problem)
+        return Machine(problem.mechanism.nominal, Dimensions(**self.given_lengths).linkage(problem, str), problem)
 
 
 @dataclass(frozen=True)
@@ -191,14 +191,15 @@ class TopicRequest:
 
     def __post_init__(self) -> None:
         """Raise `InputError` for unknown topics, topics that exclude each other, and inputs of other topics."""
-        if self.separate_command is None:
+        if self.topic_with_separate_command is None:
             chosen_topics(self.topics, job=True, word="topics")
         elif len(self.topics) > 1:
             raise InputError(
-                f"{self.separate_command} may not be combined with other topics; got {', '.join(self.topics)}; "
+                f"{self.topic_with_separate_command} may not be combined with other topics; got "
+                f"{', '.join(self.topics)}; "
                 "ask for the others separately"
             )
-        if self.separate_command in FRONT_OR_JOB_QUESTIONS:
+        if self.topic_with_separate_command in FRONT_OR_JOB_QUESTIONS:
             return
         accepted = [item.name for name in self.topic_names for item in QUESTIONS[name].inputs]
         for name in self.inputs:
@@ -211,7 +212,7 @@ class TopicRequest:
                 raise InputError(f"inputs.{name} must be text; got {quote(self.inputs[name])}; correct it")
 
     @property
-    def separate_command(self) -> str | None:
+    def topic_with_separate_command(self) -> str | None:
         """Topic that is a separate command, or None."""
         return next((name for name in self.topics if name in QUESTION_COMMANDS or name in FRONT_OR_JOB_QUESTIONS), None)
 
@@ -220,8 +221,8 @@ class TopicRequest:
         """Names of the topics."""
         return (
             chosen_topics(self.topics, job=True, word="topics")
-            if self.separate_command is None
-            else (self.separate_command,)
+            if self.topic_with_separate_command is None
+            else (self.topic_with_separate_command,)
         )
 
     def options_by_topic(self) -> dict[str, dict[str, Any]]:

@@ -16,7 +16,7 @@ from ...optimise.job.mistake_messages import schema_nodes_at, toml_text
 from ...optimise.job.model import Job, schema_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import SUBJECTS
-from ..designs.quantity_facts import facts_of_all
+from ..designs.quantity_facts import facts_of_all_quantities
 from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.job_toml import job_toml
 from ..jobs.stores import run_folders
@@ -27,7 +27,7 @@ from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS,
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
 from ..questions.record_types import schema_of as schema_of_record
 from ..render.blocks import Block
-from .call import Call, ToolResult, printed_text, tables_with_files
+from .call import Call, ToolResult, tables_with_files, text_printed_by
 from .inputs import Design, Files, JobInput, Machine, TopicRequest
 
 _MOST_RUNS = 20
@@ -45,9 +45,10 @@ def list_jobs_quantities_topics_and_runs(call: Call) -> ToolResult:
         for name, job in shipped_jobs().items()
     ]
     quantities = [
-        {key: facts[key] for key in ("name", "title", "column", "unit", "better")} for facts in facts_of_all()
+        {key: facts[key] for key in ("name", "title", "column", "unit", "better")}
+        for facts in facts_of_all_quantities()
     ]
-    topics, runs = list(map(_topic_record, QUESTIONS.values())), list(_latest_run_records(call))
+    topics, runs = list(map(_topic_description, QUESTIONS.values())), list(_latest_run_records(call))
     lines = [
         *("Included jobs:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
         *(
@@ -78,7 +79,7 @@ def describe(
 ) -> ToolResult:
     """Describe a quantity (meaning, formula, unit), a topic, an included job (its tables and TOML), or a job key."""
     word = name.strip()
-    facts = {item["name"]: item for item in facts_of_all()}
+    facts = {item["name"]: item for item in facts_of_all_quantities()}
     record: dict[str, Any] = {}
     lines = []
     if word in facts:
@@ -88,7 +89,7 @@ def describe(
             f"{quantity['formula']}"
         )
     if word in QUESTIONS:
-        record["topic"] = topic = _topic_record(QUESTIONS[word])
+        record["topic"] = topic = _topic_description(QUESTIONS[word])
         input_lines = "".join(f"\n  {item.name}: {item.remark}" for item in QUESTIONS[word].inputs)
         lines.append(f"topic {word}: {topic['shows']}{input_lines}")
     if word in DESIGN_QUESTIONS:
@@ -99,7 +100,7 @@ def describe(
         record["job"] = {"tables": shipped_jobs()[word], "toml": text}
         lines.append(text)
     with suppress(NotFound):
-        record["key"] = key = _job_key_record(word)
+        record["key"] = key = _job_key_description(word)
         lines += [f"key {word}: {key['description']}", *_job_key_lines(key)]
     if not record:
         near = closest_word(word, [*facts, *QUESTIONS, *shipped_jobs()])
@@ -114,12 +115,12 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
     The design comes from a run (its knee by default), or has your own lengths for a job. Some topics concern the front
     of a run (wish), several runs (compare), or a job (sweep).
     """
-    if question.separate_command in FRONT_OR_JOB_QUESTIONS:
-        return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.separate_command])
+    if question.topic_with_separate_command in FRONT_OR_JOB_QUESTIONS:
+        return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.topic_with_separate_command])
     options = question.options_by_topic()
     machine = subject.machine(call)
     with end_custom_processes_on_exit(machine.problem):
-        alone = question.separate_command or (
+        alone = question.topic_with_separate_command or (
             "swing" if machine.problem.motion is not None and not question.topics else None
         )
         if alone is not None:
@@ -174,7 +175,7 @@ def _analyse_rotating(
         undefined=undefined,
     )
     judgement = judge_design(machine.problem, machine.mechanism, machine.linkage, row, question.units)
-    text = printed_text(
+    text = text_printed_by(
         lambda screen: show_analysis(screen, analysis, judgement, question.units, custom=machine.problem.own)
     )
     return ToolResult(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
@@ -188,7 +189,7 @@ def _run_question_command(name: str, machine: Machine, question: TopicRequest) -
         machine.mechanism, machine.linkage, machine.problem, question.inputs
     )
     record = bound_question.numbers(lambda: False)
-    text = _plain_text(bound_question.blocks(record), bound_question.notes(record), question.units)
+    text = _blocks_and_notes_as_text(bound_question.blocks(record), bound_question.notes(record), question.units)
     return ToolResult(convert_record(record, question.units), text)
 
 
@@ -202,24 +203,24 @@ def _ask_front_or_job(
         target: Any = subject.compared_runs(call)
     elif definition.subject == "job":
         target = problem = subject.problem(call)
-        inputs = subject.lengths | inputs
+        inputs = subject.given_lengths | inputs
     else:
         folder, target, row = subject.folder_front_and_row(call)
         problem, place = target.problem, {"run": path_text(folder)}
     with nullcontext() if problem is None else end_custom_processes_on_exit(problem):
         result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
-    text = _plain_text(result.blocks, result.notes, question.units)
+    text = _blocks_and_notes_as_text(result.blocks, result.notes, question.units)
     return ToolResult(place | result.record(question.units), text, is_error=not result.is_satisfied)
 
 
-def _plain_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
+def _blocks_and_notes_as_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
     """Return the blocks of an answer as plain text, followed by its notes."""
     from ..render.terminal import print_blocks
 
-    return "\n".join((printed_text(lambda screen: print_blocks(screen, blocks, units)), *notes))
+    return "\n".join((text_printed_by(lambda screen: print_blocks(screen, blocks, units)), *notes))
 
 
-def _topic_record(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
+def _topic_description(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
     inputs = [{key: getattr(item, key) for key in _OF_TOPIC} for item in question.inputs]
     if isinstance(question, FrontOrJobQuestion):
         return {
@@ -249,7 +250,7 @@ def _latest_run_records(call: Call) -> Iterator[dict[str, Any]]:
         yield {"run": folder.name, **summary}
 
 
-def _job_key_record(name: str) -> dict[str, Any]:
+def _job_key_description(name: str) -> dict[str, Any]:
     """Return the description of a job-file key and of the keys within it. Raises `NotFound`."""
     schema, path = schema_of(Job), list[str | int]()
     for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):

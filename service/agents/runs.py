@@ -14,8 +14,8 @@ from ...objectives.kinds import System
 from ...optimise.problem.problem import Problem
 from ..designs.design_selection_options import require_single_choice
 from ..designs.display_units import convert_result
-from ..designs.selection import no_match_message, numbered_rows, result_part
-from ..designs.stored_designs import front_of, stored_design
+from ..designs.selection import no_match_message, numbered_rows, result_with_rows
+from ..designs.stored_designs import front_of_result, stored_design
 from ..jobs.submission import LONGEST_CALL, end_custom_processes_on_exit, job_json
 from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
@@ -26,7 +26,7 @@ from ..text.options import Pick, Run, Selection, SettingOptions, Units
 from ..text.tables import marked_and_evenly_spread_rows, show_design, show_front, show_result, usual_keys
 from ..workers.direct_search import Opened, new_run, renewing_claim, resumed_run, save_result, with_settings
 from ..workers.direct_search import search as front_of_run
-from .call import Call, ToolResult, printed_text, tables_with_files
+from .call import Call, ToolResult, tables_with_files, text_printed_by
 from .inputs import Files, FrontPart, Number, OptionalJob
 
 Written = Literal["csv", "json", "figures", "report", "pdf", "dxf", "svg", "motion", "gif", "cycle"]
@@ -57,17 +57,19 @@ class Search:
         float | None, Field(description="Time limit in seconds; the designs found so far are returned.", gt=0.0)
     ] = None
 
-    def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
+    def open_new_or_resumed_run(
+        self, call: Call, store: Store, settings: SettingOptions
+    ) -> AbstractContextManager[Opened]:
         """Return the context of the run. Raises `InputError` unless exactly one of job and run is given."""
         if (self.job is None) == (self.resume is None):
             received = "both" if self.job else "neither"
             raise InputError(f"a search needs a job, or a run to continue; got {received}; give one of them")
         if self.resume is not None:
-            if settings.overrides:
+            if settings.stated_settings:
                 raise InputError("a run must continue with its original number of designs and seed; leave them out")
             return resumed_run(store, call.runs, call.run_folder(self.resume).name, call.problem_to_resume)
         tables = tables_with_files(self.job or {}, self.files)
-        problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.overrides)
+        problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.stated_settings)
         return new_run(store, call.runs, problem, stated, [job_json(stated)])
 
 
@@ -83,7 +85,9 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
 
     with ExitStack() as entered:
         try:
-            opened = entered.enter_context(search.open_run(call, entered.enter_context(call.store()), settings))
+            opened = entered.enter_context(
+                search.open_new_or_resumed_run(call, entered.enter_context(call.store()), settings)
+            )
         except InfeasibleError as error:
             return ToolResult(infeasible_result(error).record(), str(error), is_error=True)
         run, problem, claim = opened
@@ -95,8 +99,8 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
         result = save_result(opened, front, budget)
     result_in_units = convert_result(result, part.units, problem)
     remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
-    text = printed_text(lambda screen: show_result(screen, result_in_units))
-    record = _front_record(
+    text = text_printed_by(lambda screen: show_result(screen, result_in_units))
+    record = _record_of_rows(
         result_in_units,
         marked_and_evenly_spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows),
         part,
@@ -120,12 +124,12 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
     if picked is None:
         rows = marked_and_evenly_spread_rows(result_in_units, chosen, part.rows)
         return ToolResult(
-            _front_record(result_in_units, rows, part),
-            printed_text(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
+            _record_of_rows(result_in_units, rows, part),
+            text_printed_by(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
         )
-    record = _front_record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
+    record = _record_of_rows(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
     record["trade_offs"] = record["trade_offs"] or _trade_off_sentences(call, folder, result, picked, part.units)
-    text = printed_text(lambda screen: show_design(screen, result_in_units.designs[picked]))
+    text = text_printed_by(lambda screen: show_design(screen, result_in_units.designs[picked]))
     return ToolResult(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
 
 
@@ -181,10 +185,10 @@ def files(
     return ToolResult(record, "\n".join(f"{kind}: {', '.join(paths)}" for kind, paths in written.items()))
 
 
-def _front_record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
+def _record_of_rows(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
     """Return some designs of a result with their numbers, ready for JSON."""
     names = part.requested_keys(list(result.designs[0]), usual_keys(result)) if result.designs else None
-    return result_part(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
+    return result_with_rows(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
 def _selected_design_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
@@ -201,7 +205,7 @@ def _trade_off_sentences(call: Call, folder: Path, result: Result, row: int, uni
 
     try:
         problem = call.problem_of_run(folder, result)
-        return trade_offs_of(front_of(problem, result), row, stored_design(problem, result, row + 1), units)
+        return trade_offs_of(front_of_result(problem, result), row, stored_design(problem, result, row + 1), units)
     except InputError:
         return []
 
@@ -209,4 +213,6 @@ def _trade_off_sentences(call: Call, folder: Path, result: Result, row: int, uni
 def _draw_figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
     from ..figures.front_figures import write_front_figures
 
-    return [path_text(file) for file in write_front_figures(front_of(problem, result), folder / "figures", units)]
+    return [
+        path_text(file) for file in write_front_figures(front_of_result(problem, result), folder / "figures", units)
+    ]

@@ -65,10 +65,12 @@ def serve(runs_folder: Path, allowed_functions: frozenset[str], *, on_signal: Ca
 
     Raises `MissingExtra` at import without the package `mcp`.
     """
-    anyio.run(_serve, runs_folder, allowed_functions, on_signal)
+    anyio.run(_serve_until_stopped, runs_folder, allowed_functions, on_signal)
 
 
-async def _serve(runs_folder: Path, allowed_functions: frozenset[str], on_signal: Callable[[], None]) -> None:
+async def _serve_until_stopped(
+    runs_folder: Path, allowed_functions: frozenset[str], on_signal: Callable[[], None]
+) -> None:
     searches, other_calls, stopping = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1), threading.Event()
 
     async def end_on_signal() -> None:
@@ -79,7 +81,7 @@ async def _serve(runs_folder: Path, allowed_functions: frozenset[str], on_signal
                     on_signal()
 
     async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
-        return ListToolsResult(tools=[_declaration(tool) for tool in TOOLS])
+        return ListToolsResult(tools=[_tool_declaration(tool) for tool in TOOLS])
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else other_calls
@@ -169,6 +171,6 @@ def _error_result(sentence: str) -> ToolResult:
     return ToolResult({}, sentence, is_error=True)
 
 
-def _declaration(tool: Tool) -> Declared:
+def _tool_declaration(tool: Tool) -> Declared:
     hints = ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
     return Declared(name=tool.name, description=tool.description, input_schema=tool.schema, annotations=hints)

@@ -40,7 +40,7 @@ class Tool:
         return {name: hint for name, hint in hints.items() if is_dataclass(hint) and name not in ("call", "return")}
 
     @cached_property
-    def inputs(self) -> type[BaseModel]:
+    def input_model(self) -> type[BaseModel]:
         """Pydantic model of the inputs."""
         hints, definitions = get_type_hints(self.run, include_extras=True), dict[str, Any]()
         for name, parameter in inspect.signature(self.run).parameters.items():
@@ -57,22 +57,22 @@ class Tool:
     @cached_property
     def schema(self) -> dict[str, Any]:
         """JSON Schema of the inputs."""
-        return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
+        return {key: value for key, value in schema_of(self.input_model).items() if key not in ("$schema", "title")}
 
     def execute(self, call: Call, arguments: Mapping[str, Any]) -> ToolResult:
         """Run the tool. Raises `InputError` for unknown inputs."""
         try:
-            inputs = self.inputs.model_validate(dict(arguments))
+            inputs = self.input_model.model_validate(dict(arguments))
         except ValidationError as error:
             raise InputError("; ".join(map(self._error_sentence, error.errors(include_url=False)[:5]))) from None
-        values = {name: getattr(inputs, name) for name in self.inputs.model_fields}
+        values = {name: getattr(inputs, name) for name in self.input_model.model_fields}
         for name, group in self.input_groups.items():
             values[name] = group(**{item.name: values.pop(item.name) for item in fields(group)})
         return self.run(call, **values)
 
     def _error_sentence(self, details: Any) -> str:
         """Return the error message for an input: rule, value, remedy."""
-        name, accepted = str(details["loc"][0]), list(self.inputs.model_fields)
+        name, accepted = str(details["loc"][0]), list(self.input_model.model_fields)
         if details["type"] == "extra_forbidden":
             near = closest_word(name, accepted)
             remedy = f"did you mean {near}?" if near else "leave it out"

@@ -47,10 +47,10 @@ class ActiveLimitsModel(BaseModel):
 @router.get("/jobs/{number}/binding", responses=problem_responses(409))
 def list_active_limits(stored_front: FrontDep, store: StoreDep) -> ActiveLimitsModel:
     """List the active limits of a front, where a wider limit may improve designs."""
-    limits = active_limits(stored_front.problem, stored_front.result, store.tables(stored_front.job.id))
+    limits = active_limits(stored_front.problem, stored_front.result, store.job_tables(stored_front.job.id))
     models = [
         LimitModel(
-            words=limit.words,
+            words=limit.limit_in_words,
             designs=list(limit.designs),
             **{name: value for name, value in vars(limit).items() if name not in ("size", "designs")},
         )

@@ -92,7 +92,9 @@ def analyse_design(stored_front: FrontDep, design: DesignNumber, show: Show = []
         row, undefined = quantities_of_swing(stored)
         record = json_ready(row | {"violated": violations_of(stored.mechanism, row), "undefined": undefined})
         return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=[])
-    record, notes = _record_with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
+    record, notes = _analysis_record_and_notes(
+        stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show
+    )
     return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=notes)
 
 
@@ -106,7 +108,7 @@ def analyse_given_dimensions(request: WhatIf, settings: SettingsDep) -> Analysis
     if request.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(request.speed, "speed"))
     linkage = Dimensions(request.crank, request.rod, request.offset).linkage(problem, str)
-    record, notes = _record_with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in request.show)
+    record, notes = _analysis_record_and_notes(mechanism, linkage, topics, problem.own, lenient=ALL in request.show)
     return AnalysisModel(analysis=record, notes=notes)
 
 
@@ -124,7 +126,7 @@ def show_trade_offs(stored_front: FrontDep, design: DesignNumber, units: UnitsPa
     )
 
 
-def _record_with_topics(
+def _analysis_record_and_notes(
     mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], custom: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and its notes."""

@@ -81,7 +81,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
         docs_url=None,  # its pages load from other sites: see api_reference
         redoc_url=None,
         routes=_all_routes(),
-        lifespan=_limit_threads,
+        lifespan=_limited_threads,
         middleware=[
             Middleware(Timed),
             Middleware(Guard, settings=settings),
@@ -111,7 +111,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
 
 
 @asynccontextmanager
-async def _limit_threads(_: FastAPI) -> AsyncIterator[None]:
+async def _limited_threads(_: FastAPI) -> AsyncIterator[None]:
     current_default_thread_limiter().total_tokens = THREADS
     yield
 

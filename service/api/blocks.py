@@ -79,22 +79,22 @@ def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
 
 def _block_model(block: Block) -> AnswerBlock:
     if isinstance(block, Sentence):
-        return AnswerBlock(text=_parts(block.text), style=block.style)
+        return AnswerBlock(text=_text_parts(block.text), style=block.style)
     columns = []
     for column in block.columns:
-        title = _parts(column.title)
+        title = _text_parts(column.title)
         unit = [] if column.kind is None else [*([", "] if title else []), _unit_part(column.kind)]
         columns.append(ColumnPart(title=[*title, *unit], right=column.right_aligned))
-    rows = [[_parts(cell, bare=isinstance(cell, Value)) for cell in row] for row in block.rows]
+    rows = [[_text_parts(cell, bare=isinstance(cell, Value)) for cell in row] for row in block.rows]
     return AnswerBlock(columns=columns, rows=rows)
 
 
-def _parts(text: Text, *, bare: bool = False) -> Parts:
+def _text_parts(text: Text, *, bare: bool = False) -> Parts:
     parts = text if isinstance(text, tuple) else (text,) if text != "" else ()
-    return [_part(part, bare) for part in parts]
+    return [_part_model(part, bare) for part in parts]
 
 
-def _part(part: Part, bare: bool) -> str | NumberPart | PhrasePart:
+def _part_model(part: Part, bare: bool) -> str | NumberPart | PhrasePart:
     if isinstance(part, Value):
         return _number_part(part, bare)
     if isinstance(part, Phrase):

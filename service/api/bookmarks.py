@@ -14,7 +14,7 @@ from ..designs.changed_design import Variation, design_with_numbers, judged_vari
 from ..designs.columns import all_columns
 from ..designs.display_units import convert_rows
 from ..designs.judged_requirements import faults_in_words, ranges_as_requirements
-from ..designs.stored_designs import StoredDesign, design_of, stored_design
+from ..designs.stored_designs import StoredDesign, design_of_row, stored_design
 from ..runs.result import csv_text, json_ready
 from ..store.bookmark import Action, Bookmark
 from ..store.bookmarks_and_wishes import bookmark_design, bookmarks_of, history_of, remove_bookmark, update_bookmark
@@ -141,8 +141,8 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 @router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
     """Bookmark a design with a name, a note and a star."""
-    design = _requested_design(stored_front, request)
-    _bookmark_variation(
+    design = _design_to_bookmark(stored_front, request)
+    _variation_of_design(
         stored_front, replace(design, allowed=request.allow)
     )  # reject what cannot be computed before it is stored
     fields: dict[str, Any] = request.model_dump(exclude={"dimensions", "allow"})
@@ -175,7 +175,7 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
     """Return the bookmarks as a table: names, notes and reasons, then all quantities at full precision."""
     rows: list[Any] = []
     for bookmark in bookmarks_of(store, stored_front.job.id):
-        varied = _bookmark_variation(stored_front, _bookmarked_design(stored_front, bookmark))
+        varied = _variation_of_design(stored_front, _design_of_bookmark(stored_front, bookmark))
         head = {
             "design": bookmark.design,
             "bookmark": bookmark.number,
@@ -195,11 +195,11 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
     )
 
 
-def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
+def _design_to_bookmark(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
     """Return the design to bookmark. Raises `InputError` for dimensions that the job does not define."""
     if request.design is None and not request.dimensions:
         raise InputError("a bookmark needs a design on the front, or dimensions; got neither; give one of them")
-    row = {} if request.design is None else stored_front.row(request.design)
+    row = {} if request.design is None else stored_front.row_of_design(request.design)
     if request.design is not None and not request.dimensions:
         return stored_design(stored_front.problem, stored_front.result, request.design)
     allowed_keys = {*_LENGTHS, *(rule.column for rule in ranges_as_requirements(stored_front.problem.parts()[0]))}
@@ -216,25 +216,25 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
         raise InputError(
             f"a design without a number needs all dimensions; got none for {', '.join(missing)}; give them"
         )
-    design = design_of(stored_front.problem, {**row, **request.dimensions})
+    design = design_of_row(stored_front.problem, {**row, **request.dimensions})
     varying = {column_of_variable(item)[0] for item in design.part.mechanism.varying}
     values = {key: value for key, value in request.dimensions.items() if key in varying and isinstance(value, float)}
     return design_with_numbers(design, design.values[:3], values)
 
 
-def _bookmarked_design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
+def _design_of_bookmark(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
     return StoredDesign(
         stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant, bookmark.allowed
     )
 
 
-def _bookmark_variation(stored_front: StoredFront, design: StoredDesign) -> Variation:
+def _variation_of_design(stored_front: StoredFront, design: StoredDesign) -> Variation:
     return judged_variation(design, stored_front.result, stored_front.minimised_objectives)
 
 
 def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
-    design = _bookmarked_design(stored_front, bookmark)
-    varied = _bookmark_variation(stored_front, design)
+    design = _design_of_bookmark(stored_front, bookmark)
+    varied = _variation_of_design(stored_front, design)
     origin = stored_design(stored_front.problem, stored_front.result, bookmark.design) if bookmark.design else None
     same = origin is not None and bookmark.is_of(origin.variant, origin.values)
     fields = {
@@ -244,7 +244,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
     return BookmarkedDesign(
         **fields,
         changed=not same,
-        numbers={} if same else _design_query(design) if origin and origin.variant == design.variant else None,
+        numbers={} if same else _query_for_design(design) if origin and origin.variant == design.variant else None,
         decision=bookmark.decision(faults),
         cells=json_ready(varied.row),
         broken=varied.broken,
@@ -254,7 +254,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
     )
 
 
-def _design_query(design: StoredDesign) -> dict[str, float | list[str]]:
+def _query_for_design(design: StoredDesign) -> dict[str, float | list[str]]:
     """Return the query that changes a reference design, which has the same choices, to the dimensions of this one."""
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
     pairs = zip(map(column_of_variable, design.part.mechanism.varying), design.values[3:], strict=True)

@@ -84,11 +84,11 @@ class Computing:
             self._prepared = True
             asyncio.get_running_loop().run_in_executor(None, self._start_process)
 
-    async def handle(self, queue_name: str, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle_in_idle_process(self, queue_name: str, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request in an idle process, and kill the process if the client leaves early."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
         messages = asyncio.Queue[Message | None]()  # a client that does not read must not occupy a process
-        answering = asyncio.create_task(self._compute(queue_name, question, messages.put_nowait))
+        answering = asyncio.create_task(self._compute_in_turn(queue_name, question, messages.put_nowait))
         leaving = asyncio.create_task(_wait_for_disconnect(receive))
         for task in (answering, leaving):
             task.add_done_callback(lambda _: messages.put_nowait(None))
@@ -107,8 +107,8 @@ class Computing:
         for process in list(self._all):
             process.kill()
 
-    async def _compute(self, queue_name: str, question: Question, give: Callable[[Message], None]) -> None:
-        async with turn(self._turns[queue_name], f"{queue_name} analyses"):
+    async def _compute_in_turn(self, queue_name: str, question: Question, give: Callable[[Message], None]) -> None:
+        async with wait_for_turn(self._turns[queue_name], f"{queue_name} analyses"):
             while (process := self._take_idle_process()) is None:
                 await run_sync(self._start_process, limiter=self._threads)
             try:
@@ -164,7 +164,7 @@ class _Process:
 
         Raises `EOFError` or `OSError` if the process ends early, and forwards the error that prevents an answer.
         """
-        message = await run_sync(self._send_request, question, abandon_on_cancel=True, limiter=self._threads)
+        message = await run_sync(self._send_and_receive, question, abandon_on_cancel=True, limiter=self._threads)
         while True:
             if isinstance(message, Exception):
                 raise message
@@ -173,7 +173,7 @@ class _Process:
             give(message)
             message = await run_sync(self._receive, abandon_on_cancel=True, limiter=self._threads)
 
-    def _send_request(self, question: Question) -> Message | Exception:
+    def _send_and_receive(self, question: Question) -> Message | Exception:
         self._connection.send(question)
         return self._receive()
 
@@ -210,7 +210,7 @@ _MOST = 200  # requests that wait
 
 
 @contextlib.asynccontextmanager
-async def turn(limiter: CapacityLimiter, name: str) -> AsyncIterator[None]:
+async def wait_for_turn(limiter: CapacityLimiter, name: str) -> AsyncIterator[None]:
     """Wait for a turn; refuse with status 503 and a reason if too many wait or no turn comes soon.
 
     name: name of the requests that share the limiter, in the plural.

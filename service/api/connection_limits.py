@@ -17,7 +17,7 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.server import ServerState
 
-from .problem_documents import problem_response, should_log
+from .problem_documents import is_due_for_log, problem_response
 from .security import KNOWN
 
 _log = logging.getLogger(__name__)
@@ -92,7 +92,7 @@ class Connection(H11Protocol):
         return KNOWN in getattr(self.cycle, "scope", ())  # None before the first request
 
     @property
-    def may_be_closed(self) -> bool:
+    def may_be_closed_for_others(self) -> bool:
         """Whether it may be closed to free a slot: without a token, idle, or not reading its answers."""
         is_idle = getattr(self.cycle, "response_complete", True)
         return not self.has_token or is_idle or bool(self.conn.trailing_data[0]) or self.flow.write_paused
@@ -102,14 +102,14 @@ class Connection(H11Protocol):
         super().connection_made(transport)
         limit = self._gate.limit
         transport.set_write_buffer_limits(_WRITE_BUFFER)
-        if self._make_way():
-            self._expect("request", HEAD_SECONDS)
+        if self._free_slot_or_refuse():
+            self._expect_request_part("request", HEAD_SECONDS)
         else:
             self._log_each_minute(f"refused: {limit} connections were being answered")
             text = f"the service may have at most {limit} connections at a time; all are in use; try again later"
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, text, {"Retry-After": "5"})
 
-    def _make_way(self) -> bool:
+    def _free_slot_or_refuse(self) -> bool:
         """Close the least needed connections if there are too many; return whether this one may stay."""
         if len(self.connections) <= self._gate.limit:
             return True
@@ -117,7 +117,7 @@ class Connection(H11Protocol):
             (
                 connection
                 for connection in self.connections
-                if isinstance(connection, Connection) and connection is not self and connection.may_be_closed
+                if isinstance(connection, Connection) and connection is not self and connection.may_be_closed_for_others
             ),
             key=lambda connection: (connection.has_token, connection.since),
         )
@@ -132,7 +132,7 @@ class Connection(H11Protocol):
         """End."""
         if isinstance(exc, TimeoutError):
             self._log_each_minute("closed: answers were not read")
-        self._expect("")
+        self._expect_request_part("")
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -145,27 +145,27 @@ class Connection(H11Protocol):
         if self.conn.trailing_data[0]:
             self._gate.ahead.append(super().on_response_complete)
             if len(self._gate.ahead) == 1:
-                self.loop.call_soon(self._continue_next_connection)
+                self.loop.call_soon(self._let_next_connection_read)
         else:
             super().on_response_complete()
 
-    def _continue_next_connection(self) -> None:
+    def _let_next_connection_read(self) -> None:
         continue_reading = self._gate.ahead.popleft()
         if self._gate.ahead:
-            self.loop.call_soon(self._continue_next_connection)
+            self.loop.call_soon(self._let_next_connection_read)
         continue_reading()
 
     def handle_events(self) -> None:
         """Read requests as far as they have arrived, and expect the rest in time."""
         super().handle_events()
         if self.conn.their_state is h11.SEND_BODY:
-            self._expect("body", BODY_SECONDS)
+            self._expect_request_part("body", BODY_SECONDS)
         elif self.conn.their_state is h11.IDLE and self.conn.trailing_data[0]:
-            self._expect("headers", HEAD_SECONDS)
+            self._expect_request_part("headers", HEAD_SECONDS)
         else:
-            self._expect("")
+            self._expect_request_part("")
 
-    def _expect(self, part: str, seconds: float = 0.0) -> None:
+    def _expect_request_part(self, part: str, seconds: float = 0.0) -> None:
         """Expect the rest of a request part within some seconds from its begin; an empty name ends waiting."""
         if part == self._part:
             return
@@ -193,7 +193,7 @@ class Connection(H11Protocol):
 
     def _log_each_minute(self, event: str) -> None:
         """Log a connection event, unless it was logged within the last minute."""
-        if should_log(self._gate.log_times, event):
+        if is_due_for_log(self._gate.log_times, event):
             _log.warning("connections %s", event)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:

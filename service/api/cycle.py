@@ -101,7 +101,7 @@ class CurvesModel(OfDesign, CycleModel):
     """Curves of a design on a front over its cycle."""
 
 
-def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
+def design_curves_model(design: StoredDesign, angles: int) -> CycleModel:
     """Return the curves of a design as JSON."""
     curves = design_curves(design, angles)
     inner, outer = curves.centres or (None, None)

@@ -53,7 +53,7 @@ def _file_response(
     return download_response(content, media_type, name, policy=policy)
 
 
-def _drawing(request: RequestedDesign, crank_angle_deg: float | None, system: System = "metric") -> Drawing:
+def _design_drawing(request: RequestedDesign, crank_angle_deg: float | None, system: System = "metric") -> Drawing:
     angle = None if crank_angle_deg is None else math.radians(crank_angle_deg)
     name = request.stored_front.result.name
     return design_drawing(request.design, name=name, design=request.display_name, crank_angle=angle, system=system)
@@ -62,7 +62,7 @@ def _drawing(request: RequestedDesign, crank_angle_deg: float | None, system: Sy
 @router.get("/linkage.dxf", **file_endpoint_options("image/vnd.dxf"))
 def draw_dxf(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
     """Return the linkage of a design at true scale for CAD, in millimetres; docs/drawings.md lists its layers."""
-    return _file_response(request, "dxf", "image/vnd.dxf", dxf_file(_drawing(request, crank_angle_deg)))
+    return _file_response(request, "dxf", "image/vnd.dxf", dxf_file(_design_drawing(request, crank_angle_deg)))
 
 
 @router.get("/linkage.svg", **file_endpoint_options("image/svg+xml"))
@@ -70,7 +70,7 @@ def draw_linkage(
     request: RequestedDesignDep, crank_angle_deg: CrankAngle = None, units: UnitsParameter = "metric"
 ) -> Response:
     """Return the same drawing as SVG, with its dimensions in a unit system."""
-    return _file_response(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg, units)))
+    return _file_response(request, "svg", "image/svg+xml", svg_file(_design_drawing(request, crank_angle_deg, units)))
 
 
 @router.get("/motion.html", **file_endpoint_options("text/html"))
@@ -105,7 +105,7 @@ def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsPara
 
     content = request.cached_file(
         f"report {units} {_bookmarks_revision(request, store)}",
-        lambda: html_file(_report(request, store, units)),
+        lambda: html_file(_design_report(request, store, units)),
     )
     return _file_response(request, "html", "text/html; charset=utf-8", content, label="-report")
 
@@ -116,7 +116,7 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
     from ..report.pdf import pdf_file
 
     content = request.cached_file(
-        f"pdf {units} {_bookmarks_revision(request, store)}", lambda: pdf_file(_report(request, store, units))
+        f"pdf {units} {_bookmarks_revision(request, store)}", lambda: pdf_file(_design_report(request, store, units))
     )
     return _file_response(request, "pdf", "application/pdf", content, label="-report")
 
@@ -128,7 +128,7 @@ def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") 
     return _file_response(request, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 
 
-def _report(request: RequestedDesign, store: Store, units: System) -> Report:
+def _design_report(request: RequestedDesign, store: Store, units: System) -> Report:
     """Return the report on a design, with additional data from the store."""
     from ..report.design_report import design_report
     from ..report.subject import Subject, alternatives_of

@@ -28,7 +28,7 @@ from .computing import LongRoute, QuickRoute
 from .figures import figure_response, require_figures
 from .front_files import file_endpoint_options
 from .fronts import OfDesign
-from .input_parameters import inputs_from_query, parameter_of
+from .input_parameters import inputs_from_query, parameter_of_input
 from .problem_documents import problem_responses
 from .settings import UnitsParameter
 from .stored_fronts import DesignNumber, FrontDep, RequestedDesign, RequestedDesignDep
@@ -68,7 +68,7 @@ class TopicAnswer(OfDesign):
     blocks: list[AnswerBlock]
 
 
-_PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for name, one in INPUTS.items())
+_PARAMETERS = (parameter_of_input(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for name, one in INPUTS.items())
 TopicInputsDep = Annotated[dict[str, str], inputs_from_query(INPUTS.values(), _PARAMETERS)]
 
 
@@ -93,7 +93,7 @@ def show_topic(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
     """Return the numbers and the text for one topic of a design, as stored or with other numbers."""
-    bound_question = _bind_topic(request, topic, inputs)
+    bound_question = _topic_bound_to_design(request, topic, inputs)
 
     def make() -> tuple[tuple[str], bytes]:
         numbers = bound_question.numbers()
@@ -117,12 +117,12 @@ def show_topic(
 def _topic_figure(
     request: RequestedDesign, topic: str, inputs: dict[str, str], units: System, kind: Literal["png", "svg"]
 ) -> Response:
-    bound_question = _bind_topic(request, topic, inputs)
+    bound_question = _topic_bound_to_design(request, topic, inputs)
     key = f"topic {topic} {kind} {units} {sorted(inputs.items())}"
     return _figure_response(request, key, kind, lambda: bound_question.figure(lambda: False, units))
 
 
-def _bind_topic(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
+def _topic_bound_to_design(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
     """Return a topic for a design. Raises `NotFound` for an unknown name, and the errors of `for_problem`."""
     if topic not in TOPICS:
         raise NotFound(f"there is no topic {topic!r}; choose from {', '.join(TOPICS)}")
@@ -164,7 +164,7 @@ def _add_question_endpoints(name: str, says: QuestionCommand) -> None:
     route = LongRoute if says.sizes else QuickRoute
     show_numbers.__name__, show_numbers.__doc__ = says.endpoint, says.help
     draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the result of `slidercrank {says.called or name}`."
-    inputs = inputs_from_query(question.inputs, map(parameter_of, question.inputs))
+    inputs = inputs_from_query(question.inputs, map(parameter_of_input, question.inputs))
     for endpoint in (show_numbers, draw):
         endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
     router.add_api_route(f"/{name}", show_numbers, response_model=model, route_class_override=route)

@@ -132,7 +132,7 @@ def _cached_figure_response(
     if single is None:
         return figure_response(stored_front.cached_item(name, cache_kind, draw), kind)
     request = requested_design(stored_front, int(single[1]), numbers, bookmarks, allowed)
-    drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
+    drawn = request.cached_file(cache_kind, lambda: figure_bytes(_design_datasheet(request, units), kind))
     file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.file_stem}-sheet.{kind}"
     return figure_response(drawn, kind, {"Content-Disposition": f'inline; filename="{file}"'})
 
@@ -156,7 +156,7 @@ def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontF
     return named
 
 
-def _datasheet(request: RequestedDesign, units: System) -> Figure:
+def _design_datasheet(request: RequestedDesign, units: System) -> Figure:
     from ..figures.front_figures import datasheet_of
 
     return datasheet_of(

@@ -22,7 +22,7 @@ from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
-from .input_parameters import body_model_of, inputs_from_query, parameter_of
+from .input_parameters import body_model_of_question, inputs_from_query, parameter_of_input
 from .problem_documents import problem_responses
 from .settings import LARGEST, PLAIN_DIGITS, StoreDep, UnitsParameter
 from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
@@ -50,16 +50,18 @@ def find_similar_design(
     stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric"
 ) -> LikeModel:
     """Find the design most similar to one on a front that also meets further conditions; nothing is saved."""
-    stored_front.row(design)
+    stored_front.row_of_design(design)
     nearest = LIKE.ask(stored_front.front, given.model_dump(), row=design - 1)
     record, blocks = json_ready(nearest.record(units)), block_models(nearest.blocks)
     return LikeModel(job=stored_front.job.id, number=design, like=record, blocks=blocks)
 
 
-find_similar_design.__annotations__["given"] = body_model_of(LIKE, "LikeWhere")
+find_similar_design.__annotations__["given"] = body_model_of_question(LIKE, "LikeWhere")
 router.add_api_route("/jobs/{number}/designs/{design}/like", find_similar_design, methods=["POST"], tags=["designs"])
 
-CertificateInputs = Annotated[dict[str, Any], inputs_from_query(CERTIFY.inputs, map(parameter_of, CERTIFY.inputs))]
+CertificateInputs = Annotated[
+    dict[str, Any], inputs_from_query(CERTIFY.inputs, map(parameter_of_input, CERTIFY.inputs))
+]
 _CERTIFY_EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
 
@@ -100,7 +102,7 @@ def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> Cer
     )
 
 
-ComparisonInputs = Annotated[dict[str, Any], inputs_from_query(COMPARE.inputs, map(parameter_of, COMPARE.inputs))]
+ComparisonInputs = Annotated[dict[str, Any], inputs_from_query(COMPARE.inputs, map(parameter_of_input, COMPARE.inputs))]
 _Number = Annotated[int, Query(ge=1, le=LARGEST), PLAIN_DIGITS]
 _COMPARE_EXAMPLE = {"tolerance": 1e-6, "union_hypervolume": 0.71, "coverage": [[1.0, 0.4], [0.1, 1.0]]}
 
@@ -134,7 +136,10 @@ def compare_runs(
     units: UnitsParameter = "metric",
 ) -> ComparisonModel:
     """Compare runs: the differences between their jobs, and which front is better where."""
-    runs = [ComparedRun(f"run {number}", number, fronts.get(number).result, store.tables(number)) for number in job]
+    runs = [
+        ComparedRun(f"run {number}", number, fronts.front_of_job(number).result, store.job_tables(number))
+        for number in job
+    ]
     answer = COMPARE.ask(runs, given)
     record = json_ready(answer.record(units))
     return ComparisonModel(
@@ -213,7 +218,7 @@ def round_design(
     `met` is then false. With `Accept: text/event-stream` the progress is streamed; closing the connection ends the
     search.
     """
-    stored_front.row(design)
+    stored_front.row_of_design(design)
 
     def search() -> _Events:
         """Yield the kind and data of each event."""
@@ -237,7 +242,7 @@ def round_design(
     return StreamingResponse(_event_stream(first, events), headers=STREAM_HEADERS, media_type=STREAM)
 
 
-round_design.__annotations__["given"] = body_model_of(ROUND, "Steps")
+round_design.__annotations__["given"] = body_model_of_question(ROUND, "Steps")
 router.add_api_route(
     "/jobs/{number}/designs/{design}/rounded",
     round_design,

@@ -17,7 +17,7 @@ from ...optimise.job.named_files import table_in
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.design_selection_options import chosen_row
 from ..designs.judged_requirements import front_violations_in_words, violations_in_words
-from ..designs.selection import chosen_rows, no_match_message, result_part
+from ..designs.selection import no_match_message, result_with_rows, rows_meeting_conditions
 from ..page.router import response_with_etag
 from ..runs.result import StoredObjective, json_ready
 from .problem_documents import json_with_etag_options, problem_responses
@@ -177,9 +177,9 @@ def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontMo
     """Return how a front was found and its marked designs; all its designs are at `/jobs/{number}/designs`."""
     record = json_ready(store.result_record(number))
     columns = column_models(all_columns(record.pop("columns")))
-    sentences = front_violations_in_words(fronts.get(number).result) if record.get("violated") else []
-    is_lever = table_in(store.tables(number), "mechanism").get("inversion") is not None
-    extent = fronts.get(number).extent_of_levers if is_lever and columns else None
+    sentences = front_violations_in_words(fronts.front_of_job(number).result) if record.get("violated") else []
+    is_lever = table_in(store.job_tables(number), "mechanism").get("inversion") is not None
+    extent = fronts.front_of_job(number).extent_of_levers if is_lever and columns else None
     return FrontModel(**record, job=number, columns=columns, violations=sentences, extent_mm=extent)
 
 
@@ -213,7 +213,7 @@ def pick_design(
         raise InputError("a design must be chosen by knee, topsis or lexicographic; got none; give one")
     if not result.designs:
         raise InfeasibleError(result.message)
-    rows = chosen_rows(result, where)
+    rows = rows_meeting_conditions(result, where)
     row = chosen_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
         raise InfeasibleError(no_match_message(result, where))
@@ -239,7 +239,7 @@ def list_designs(
     """Return the designs that meet all conditions, in the order of the front unless sorted."""
     result = stored_front.result
     chosen_columns = _requested_columns(stored_front, columns)
-    chosen = chosen_rows(result, where, sort=sort, reverse=reverse)
+    chosen = rows_meeting_conditions(result, where, sort=sort, reverse=reverse)
     page = chosen[offset : offset + limit]
     return DesignsModel(
         job=stored_front.job.id,
@@ -251,15 +251,15 @@ def list_designs(
         designs=[
             {column.key: json_ready(result.designs[row][column.key]) for column in chosen_columns} for row in page
         ],
-        violated=json_ready(result_part(result, page).violated),
+        violated=json_ready(result_with_rows(result, page).violated),
     )
 
 
 @router.get("/jobs/{number}/designs/{design}")
 def show_design(stored_front: FrontDep, design: DesignNumber) -> DesignModel:
     """Return all numbers for a design, by its number on the front."""
-    row = stored_front.row(design)
-    violated = {key: excess for key, [excess] in result_part(stored_front.result, [design - 1]).violated.items()}
+    row = stored_front.row_of_design(design)
+    violated = {key: excess for key, [excess] in result_with_rows(stored_front.result, [design - 1]).violated.items()}
     return DesignModel(
         job=stored_front.job.id,
         number=design,

@@ -14,7 +14,7 @@ from ..questions.inputs import Input, PlainInput
 _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
 
 
-def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
+def parameter_of_input(item: Input, prefix: str = "") -> inspect.Parameter:
     """Return the parameter for an input. prefix: start of its description."""
     kind = float if item.words is None else item.words
     examples = [round(item.unit.factor * item.read(item.example, item.name), 9)] if item.example else None
@@ -28,7 +28,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
     )
 
 
-def body_model_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
+def body_model_of_question(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
     """Return the body model for the inputs of a question. more: further fields for `create_model`."""
     fields: dict[str, Any] = {item.name: _body_field(item) for item in question.inputs if isinstance(item, PlainInput)}
     description = f"Inputs of `{question.name}`. {question.help.partition(chr(10))[0]}"

@@ -101,7 +101,7 @@ class RequestedJob:
     origin: int | None = None
 
 
-async def requested_job(request: Request) -> RequestedJob:
+async def job_in_request(request: Request) -> RequestedJob:
     """Return the submission in a request; a dependency.
 
     Raises the errors that are answered with status 400, 415 or 422.
@@ -126,8 +126,8 @@ async def requested_job(request: Request) -> RequestedJob:
     except ValidationError as error:
         errors = error.errors(include_url=False)
         raise RequestValidationError([{**details, "loc": ("body", *details["loc"])} for details in errors]) from None
-    limits = limits_within(stated.limits, settings.limits)
-    tables = await read_body_in_turn(request.app, body, insert_files, stated) if stated.files else stated.job
+    limits = job_limits_within_service_limits(stated.limits, settings.limits)
+    tables = await read_body_in_turn(request.app, body, tables_with_sent_files, stated) if stated.files else stated.job
     return RequestedJob(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
@@ -147,7 +147,7 @@ def tables_of_toml(body: bytes, most_depth: int) -> dict[str, Any]:
     return tables
 
 
-def insert_files(stated: Submission) -> dict[str, Any]:
+def tables_with_sent_files(stated: Submission) -> dict[str, Any]:
     """Return the tables of a job with the contents of the sent files inserted. Raises `JobError`."""
     from ...optimise.job import with_file_contents
 
@@ -161,7 +161,7 @@ def insert_files(stated: Submission) -> dict[str, Any]:
     return with_file_contents(stated.job, contents)
 
 
-def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:
+def job_limits_within_service_limits(requested: RequestedLimits, allowed: Limits) -> Limits:
     """Return the limits of a job: the requested values, or else the maxima of the service.
 
     Raises `InputError` for values beyond the maxima.

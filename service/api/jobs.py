@@ -103,7 +103,7 @@ def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 @router.get("/jobs/{number}/job")
 def show_tables(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Return the tables of a job, as in its job file."""
-    return store.tables(number)
+    return store.job_tables(number)
 
 
 @router.get("/jobs/{number}/files", response_model=JobFiles)

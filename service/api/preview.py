@@ -21,7 +21,7 @@ from ..preview.possible_swing import PossibleSwing
 from ..preview.preview import JobPreview, job_preview
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
-from .job_files import ChangeModel, Understood, describe_problem
+from .job_parsing_and_checks import ChangeModel, Understood, describe_problem
 from .job_requests import Submission, problem_of_tables
 from .problem_documents import validation_message
 from .settings import SettingsDep
@@ -224,10 +224,14 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
         + _submission_mistakes(draft.submission),
         understood=None if look.problem is None else describe_problem(look.problem, draft.job),
         allowed=_allowed_model(look),
-        example=_example(look),
-        swing=_swing(look.swing),
+        example=_example_design_model(look),
+        swing=_swing_preview(look.swing),
         formulas=[
-            FormulaModel(path=item.key[:500], kind=item.kind and item.kind.plain, unit=_metric_unit_symbol(item.kind))
+            FormulaModel(
+                path=item.key[:500],
+                kind=item.kind and item.kind.name_without_article,
+                unit=_metric_unit_symbol(item.kind),
+            )
             for item in look.formulas
         ],
         names=[
@@ -260,9 +264,9 @@ def _allowed_model(look: JobPreview) -> AllowedModel | None:
         return None
     return AllowedModel(
         turning_share=possible.turning,
-        stroke_mm=_scaled_ends(1e3, possible.stroke),
-        time_ratio=_scaled_ends(1.0, possible.time_ratio),
-        transmission_angle_deg=_scaled_ends(180.0 / math.pi, possible.transmission_angle),
+        stroke_mm=_ends_times_factor(1e3, possible.stroke),
+        time_ratio=_ends_times_factor(1.0, possible.time_ratio),
+        transmission_angle_deg=_ends_times_factor(180.0 / math.pi, possible.transmission_angle),
         slow_strokes=list(possible.slow_strokes),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
@@ -275,11 +279,11 @@ def _allowed_model(look: JobPreview) -> AllowedModel | None:
     )
 
 
-def _scaled_ends(factor: float, ends: Ends | None) -> Ends | None:
+def _ends_times_factor(factor: float, ends: Ends | None) -> Ends | None:
     return None if ends is None else (factor * ends[0], factor * ends[1])
 
 
-def _example(look: JobPreview) -> ExampleModel | None:
+def _example_design_model(look: JobPreview) -> ExampleModel | None:
     if look.stated is None or look.possible is None or look.possible.example is None:
         return None
     machine = look.stated.mechanism
@@ -298,19 +302,21 @@ def _example(look: JobPreview) -> ExampleModel | None:
         dead_centres_deg=(inner, outer),
         time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.is_met(machine) else None,
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
-        motion=_motion(turning, linkage),
-        extremes=_extremes(turning, linkage) if all(look.stated.ranges[name].fixed for name in DIMENSIONS) else None,
+        motion=_motion_model(turning, linkage),
+        extremes=_extreme_models_by_curve(turning, linkage)
+        if all(look.stated.ranges[name].fixed for name in DIMENSIONS)
+        else None,
     )
 
 
-def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
+def _swing_preview(possible: PossibleSwing | None) -> SwingPreview | None:
     if possible is None:
         return None
     return SwingPreview(
         from_deg=None if possible.example_swing is None else math.degrees(possible.example_swing.start),
         to_deg=None if possible.example_swing is None else math.degrees(possible.example_swing.end),
         closing_share=possible.closing,
-        travel_mm=_scaled_ends(1e3, possible.travel),
+        travel_mm=_ends_times_factor(1e3, possible.travel),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
         met_by_all=list(possible.met_by_all),
@@ -346,12 +352,12 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
     )
 
 
-def _motion(turning: Mechanism, linkage: Linkage) -> MotionModel:
+def _motion_model(turning: Mechanism, linkage: Linkage) -> MotionModel:
     curves = {column.key: column.values for column in cycle_table(turning, linkage, angles=_ANGLES)}
     return MotionModel(**{key: curves[key] for key in _CURVES})
 
 
-def _extremes(turning: Mechanism, linkage: Linkage) -> dict[str, tuple[ExtremeModel, ExtremeModel]]:
+def _extreme_models_by_curve(turning: Mechanism, linkage: Linkage) -> dict[str, tuple[ExtremeModel, ExtremeModel]]:
     extremes = {}
     for curve in curve_extremes(turning, linkage):
         key = f"{curve.name}{curve.kind.metric.suffix}"

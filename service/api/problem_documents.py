@@ -89,13 +89,13 @@ def handle_expected_errors(app: FastAPI) -> None:
 async def _refusal_response(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
-    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and should_log(request.app.state.fault_times, str(error)):
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and is_due_for_log(request.app.state.fault_times, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
     return problem_response(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
 
 
-def should_log(last_logged: dict[str, float], sentence: str) -> bool:
+def is_due_for_log(last_logged: dict[str, float], sentence: str) -> bool:
     """Whether a sentence was not logged within the last minute, since many requests meet the same fault."""
     now = time.monotonic()
     if now - last_logged.get(sentence, -_QUIET) < _QUIET:

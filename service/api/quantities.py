@@ -7,7 +7,7 @@ from pydantic import BaseModel, Field
 
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import DISPLAYED_KINDS, KINDS, metric_unit_in
-from ..designs.quantity_facts import facts_of_all
+from ..designs.quantity_facts import facts_of_all_quantities
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from ..questions.front_or_job_question import FrontOrJobQuestion
@@ -161,7 +161,7 @@ def list_units() -> UnitTable:
     ]
     kinds = [
         KindModel(
-            name=kind.plain,
+            name=kind.name_without_article,
             units=[TypedUnit(unit=unit, factor=1.0 / value_of_one_si_unit_in(unit)) for unit in kind.typed],
             spoken=dict(kind.spoken),
             si=kind.usual or kind.metric.symbol,
@@ -186,7 +186,7 @@ def list_units() -> UnitTable:
 def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and contributions."""
     return QuantityList(
-        quantities=[QuantityModel(**facts) for facts in facts_of_all()],
+        quantities=[QuantityModel(**facts) for facts in facts_of_all_quantities()],
         functions=[
             FunctionModel(name=name, least=least, most=greatest) for name, (least, greatest) in ARGUMENTS.items()
         ],
@@ -197,18 +197,21 @@ def list_quantities() -> QuantityList:
 def list_topics() -> TopicList:
     """List the topics that a design may have, and the questions about a design or a front that are commands."""
     topics = [
-        _topic(question, f"topics/{question.name}", f"analyse --show {question.name}") for question in TOPICS.values()
+        _topic_model(question, f"topics/{question.name}", f"analyse --show {question.name}")
+        for question in TOPICS.values()
     ]
-    questions = [_topic(DESIGN_QUESTIONS[name], name, says.called or name) for name, says in QUESTION_COMMANDS.items()]
+    questions = [
+        _topic_model(DESIGN_QUESTIONS[name], name, says.called or name) for name, says in QUESTION_COMMANDS.items()
+    ]
     fronts = [
-        _topic(question, question.path, name)
+        _topic_model(question, question.path, name)
         for name, question in FRONT_OR_JOB_QUESTIONS.items()
         if question.subject == "front"
     ]
     return TopicList(topics=topics, questions=questions, fronts=fronts)
 
 
-def _topic(question: DesignQuestion | FrontOrJobQuestion, path: str, command: str) -> TopicModel:
+def _topic_model(question: DesignQuestion | FrontOrJobQuestion, path: str, command: str) -> TopicModel:
     inputs = [
         InputModel(
             key=item.key,

@@ -11,7 +11,7 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from ..page.token_page import locked_page
+from ..page.token_page import token_request_page
 from .problem_documents import FAULT, problem_response
 from .settings import Settings
 
@@ -69,7 +69,7 @@ class Guard:
             await send(message)
 
         try:
-            response = self._rejection(HTTPConnection(scope)) or self.app
+            response = self._rejection_response(HTTPConnection(scope)) or self.app
             await response(scope, receive, send_with_headers)
         except Exception as error:
             _log.exception("%s %s", scope["method"], scope["path"])
@@ -78,7 +78,7 @@ class Guard:
             fault = problem_response(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
             await fault(scope, receive, send_with_headers)
 
-    def _rejection(self, connection: HTTPConnection) -> Response | None:
+    def _rejection_response(self, connection: HTTPConnection) -> Response | None:
         """Return the answer to a refused request; None if it is passed on."""
         scope, headers = connection.scope, connection.headers
         host = headers.getlist("host")
@@ -103,7 +103,7 @@ class Guard:
                 return self._set_cookie_and_redirect(connection)
             if not self._has_valid_token(connection):
                 if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
-                    return locked_page(connection)
+                    return token_request_page(connection)
                 return _unauthorised_response(
                     "a request must carry the token of the service; got none or a wrong one; send it as "
                     "Authorization: Bearer TOKEN, or open the address that the service printed"
@@ -117,7 +117,7 @@ class Guard:
         tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
         if len(tokens) != 1 or not self._is_token(tokens[0]):
             if "text/html" in connection.headers.get("accept", ""):
-                return locked_page(connection, wrong=True)
+                return token_request_page(connection, wrong=True)
             return _unauthorised_response(
                 "the address must carry the token of the service; got a wrong one; open the address that the service "
                 "printed last"

@@ -38,15 +38,15 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def host_names_of(host: str) -> tuple[str, ...]:
+def accepted_host_names(host: str) -> tuple[str, ...]:
     """Return the host names of a service that listens on an address."""
     from .settings import LOOPBACK
 
     host_name = socket.gethostname() if host in _ANY else host
-    return tuple(dict.fromkeys((*LOOPBACK, _bracketed(host_name))))
+    return tuple(dict.fromkeys((*LOOPBACK, _host_in_brackets_if_ipv6(host_name))))
 
 
-def listen(host: str, port: int) -> socket.socket:
+def listening_socket(host: str, port: int) -> socket.socket:
     """Return a listening socket; connections wait from now on. Raises `InputError` if that is not possible."""
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
@@ -72,10 +72,10 @@ def _listen_error_text(error: OSError | UnicodeError) -> str:
     return os.strerror(error.errno or 0) if has_number else error.strerror or str(error)
 
 
-def url_of(host: str, listening: socket.socket, token: str | None) -> str:
+def browser_url(host: str, listening: socket.socket, token: str | None) -> str:
     """Return the address of a service for a browser, with its token if there is one."""
     name = socket.gethostname() if host in _ANY else host
-    address = f"http://{_bracketed(name)}:{listening.getsockname()[1]}/"
+    address = f"http://{_host_in_brackets_if_ipv6(name)}:{listening.getsockname()[1]}/"
     return address if token is None else f"{address}?token={token}"
 
 
@@ -134,5 +134,5 @@ def run_server(
     Server(config_of(app)).run(sockets=[listening])
 
 
-def _bracketed(host: str) -> str:
+def _host_in_brackets_if_ipv6(host: str) -> str:
     return f"[{host}]" if ":" in host else host

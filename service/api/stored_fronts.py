@@ -23,7 +23,7 @@ from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import Column, all_columns
 from ..designs.design_selection_options import minimised_values
-from ..designs.stored_designs import StoredDesign, front_of, stored_design
+from ..designs.stored_designs import StoredDesign, front_of_result, stored_design
 from ..drawings.lever_parts import Extent, extent_of_front
 from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..runs.result import Result, Row
@@ -66,7 +66,7 @@ class StoredFront:
     @cached_property
     def front(self) -> ParetoFront:
         """Front data in the form that figures need."""
-        return front_of(self.problem, self.result)
+        return front_of_result(self.problem, self.result)
 
     @cached_property
     def extent_of_levers(self) -> Extent | None:
@@ -97,7 +97,7 @@ class StoredFront:
                     self._cached.popitem(last=False)
         return content
 
-    def row(self, number: int) -> Row:
+    def row_of_design(self, number: int) -> Row:
         """Return a design by its number, counted from 1. Raises `NotFound`."""
         count = len(self.result.designs)
         if number > count:
@@ -107,7 +107,7 @@ class StoredFront:
 
     def design(self, number: int) -> StoredDesign:
         """Return a design as a machine, by its number."""
-        self.row(number)
+        self.row_of_design(number)
         return stored_design(self.problem, self.result, number)
 
 
@@ -122,7 +122,7 @@ class StoredFronts:
         self._cached: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
         self._reading = threading.Lock()
 
-    def get(self, number: int) -> StoredFront:
+    def front_of_job(self, number: int) -> StoredFront:
         """Return the front of a job. Raises `NotFound` for a missing job, `RunError` if it has no result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
@@ -133,7 +133,7 @@ class StoredFronts:
                     job,
                     self._store.result(number),
                     lambda: with_time_limit_per_call(
-                        parse_with_allowed_functions(self._store.tables(number), self._allowed), LONGEST_WAIT
+                        parse_with_allowed_functions(self._store.job_tables(number), self._allowed), LONGEST_WAIT
                     ),
                 )
                 if job.finished is not None:
@@ -155,11 +155,11 @@ FrontsDep = Annotated[StoredFronts, state_dependency("fronts")]
 """Fronts of all jobs."""
 
 
-def _front_of_job(number: JobNumber, fronts: FrontsDep) -> StoredFront:
-    return fronts.get(number)
+def _stored_front_dependency(number: JobNumber, fronts: FrontsDep) -> StoredFront:
+    return fronts.front_of_job(number)
 
 
-FrontDep = Annotated[StoredFront, Depends(_front_of_job)]
+FrontDep = Annotated[StoredFront, Depends(_stored_front_dependency)]
 """Front of the job in the path, with its designs."""
 
 
@@ -182,7 +182,7 @@ _VALUE = "another number that varies, by column, such as slider_mass_kg=1.2; rep
 _ALLOW = "allowed deviation from a requirement, by column, such as stroke_mm=0.05; repeatable"
 
 
-def _changed_numbers(
+def _changed_numbers_dependency(
     crank_mm: Annotated[Length | None, Query(description=_OTHER, examples=[40.0])] = None,
     rod_mm: Annotated[Length | None, Query(description=_OTHER, examples=[64.0])] = None,
     offset_mm: Annotated[
@@ -222,7 +222,7 @@ def _allowed_deviations(
 AllowedDep = Annotated[Numbers, Depends(_allowed_deviations)]
 """Allowed deviations in an address, by column."""
 
-NumbersDep = Annotated[Numbers | None, Depends(_changed_numbers)]
+NumbersDep = Annotated[Numbers | None, Depends(_changed_numbers_dependency)]
 """Numbers that an address sets for a design, None for those of the design itself. Raises `InputError` if it sets only
 one or two lengths."""
 
@@ -290,7 +290,7 @@ def requested_design(
 
     Raises `NotFound`, and `InputError` if it does not rotate fully.
     """
-    stored, row = stored_front.design(number), stored_front.row(number)
+    stored, row = stored_front.design(number), stored_front.row_of_design(number)
     cells = {column: row.get(column) for column in numbers or ()}
     stored_numbers = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}
     if all(
@@ -310,11 +310,11 @@ def requested_design(
     return replace(request, design=replace(changed, allowed=request.bookmark.allowed))
 
 
-def _requested_design(
+def _requested_design_dependency(
     stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep, allowed: AllowedDep, store: StoreDep
 ) -> RequestedDesign:
     return requested_design(stored_front, design, numbers, bookmarks_of(store, stored_front.job.id), allowed)
 
 
-RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design)]
+RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design_dependency)]
 """Design in the path, with the numbers in the query."""

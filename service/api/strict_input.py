@@ -122,7 +122,7 @@ def require_shallow_and_portable(value: Any, most_depth: int) -> None:
         next_level = list[Any]()
         for item in level:
             if not isinstance(item, dict | list):
-                _require_portable(item)
+                _require_portable_item(item)
             elif depth > most_depth:
                 raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it")
             else:
@@ -130,7 +130,7 @@ def require_shallow_and_portable(value: Any, most_depth: int) -> None:
         level = next_level
 
 
-def _require_portable(item: object) -> None:
+def _require_portable_item(item: object) -> None:
     if isinstance(item, str):
         if "\0" in item or (not item.isascii() and any("\ud800" <= letter <= "\udfff" for letter in item)):
             raise InputError("text must have complete characters and no NUL; got an invalid character; leave it out")

@@ -23,10 +23,10 @@ from .job_requests import (
     Clone,
     IdempotencyKey,
     RequestedJob,
-    limits_within,
+    job_in_request,
+    job_limits_within_service_limits,
     merge_patch,
     problem_of_tables,
-    requested_job,
 )
 from .models import JobStateModel
 from .problem_documents import problem_responses
@@ -91,7 +91,7 @@ class Queue:
         self.response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job.record()
 
-    def submit_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
+    def submit_copy_with_tables(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
         """Queue a copy of a job with other tables, and return its record."""
         return self.submit(RequestedJob(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
 
@@ -100,7 +100,7 @@ QueueDep = Annotated[Queue, Depends()]
 
 
 @router.post("/jobs", **_SENT)
-def submit_job(request: Annotated[RequestedJob, Depends(requested_job)], queue: QueueDep) -> dict[str, Any]:
+def submit_job(request: Annotated[RequestedJob, Depends(job_in_request)], queue: QueueDep) -> dict[str, Any]:
     """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
     origin_exists = request.origin is not None and queue.store.jobs(numbers={request.origin}, limit=1)
     return queue.submit(request, origin=request.origin if origin_exists else None)
@@ -111,9 +111,11 @@ def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any
     """Queue a copy of a job with changes."""
     job = queue.store.job(number)
     copy = RequestedJob(
-        tables=merge_patch(queue.store.tables(number), clone.changes),
+        tables=merge_patch(queue.store.job_tables(number), clone.changes),
         priority=job.priority if clone.priority is None else clone.priority,
-        limits=job.limits if clone.limits is None else limits_within(clone.limits, queue.settings.limits),
+        limits=job.limits
+        if clone.limits is None
+        else job_limits_within_service_limits(clone.limits, queue.settings.limits),
     )
     return queue.submit(copy, origin=number)
 
@@ -122,8 +124,8 @@ def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any
 def submit_with_wider_limits(stored_front: FrontDep, request: Widening, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job with wider limits; the copy records its origin."""
     wider = [(limit.of, limit.side, limit.value) for limit in request.limits]
-    return queue.submit_copy(
-        stored_front.job, widen_limits(stored_front.problem, queue.store.tables(stored_front.job.id), wider)
+    return queue.submit_copy_with_tables(
+        stored_front.job, widen_limits(stored_front.problem, queue.store.job_tables(stored_front.job.id), wider)
     )
 
 
@@ -135,9 +137,9 @@ def submit_search_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDe
     """
     lengths = (request.crank_mm, request.rod_mm, request.offset_mm)
     tables = job_near_lengths(
-        stored_front.problem, queue.store.tables(stored_front.job.id), lengths, share=request.share
+        stored_front.problem, queue.store.job_tables(stored_front.job.id), lengths, share=request.share
     )
-    record = queue.submit_copy(stored_front.job, tables)
+    record = queue.submit_copy_with_tables(stored_front.job, tables)
     if not (stored_front.problem.choices or stored_front.problem.parts()[0].mechanism.varying):
         start = StoredDesign(stored_front.problem.part(0), tuple(length / 1e3 for length in lengths), 0)
         with suppress(InputError):  # it cannot be assembled: the search around it may still find designs

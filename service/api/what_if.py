@@ -30,7 +30,7 @@ from ..questions.discovery import DESIGN_QUESTIONS
 from ..runs.result import json_ready
 from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import QuickRoute
-from .cycle import CurvesModel, CycleModel, cycle_model
+from .cycle import CurvesModel, CycleModel, design_curves_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
 from .problem_documents import problem_responses
 from .settings import PLAIN_DIGITS, StoreDep
@@ -123,7 +123,9 @@ def show_curves(
     ] = 360,
 ) -> CurvesModel:
     """Return slider motion, drive, transmission angle and joint forces over the cycle; see the answer's description."""
-    return CurvesModel(job=stored_front.job.id, number=design, **dict(cycle_model(stored_front.design(design), angles)))
+    return CurvesModel(
+        job=stored_front.job.id, number=design, **dict(design_curves_model(stored_front.design(design), angles))
+    )
 
 
 @router.get("/jobs/{number}/designs/{design}/requirements")
@@ -173,7 +175,7 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     row, undefined = with_undefined_values(
         changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion
     )
-    cycle = cycle_model(stored, request.angles) if request.angles else None
+    cycle = design_curves_model(stored, request.angles) if request.angles else None
     violated = violations_of(stored.mechanism, row)
     return WhatIfModel(
         job=stored_front.job.id,

@@ -12,7 +12,7 @@ from ..questions.wish.analysis import wish_result
 from ..store.bookmarks_and_wishes import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
-from .input_parameters import body_model_of
+from .input_parameters import body_model_of_question
 from .problem_documents import problem_responses
 from .settings import StoreDep, UnitsParameter
 from .stored_fronts import FrontDep
@@ -21,7 +21,7 @@ router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_res
 
 QUESTION = FRONT_OR_JOB_QUESTIONS["wish"]
 _DESIGN = Field(None, ge=1, le=2**31, description="reference for improve, keep and worsen, by its number")
-WishesGiven = body_model_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
+WishesGiven = body_model_of_question(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
 
 class WishModel(BaseModel):
@@ -94,9 +94,12 @@ def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsP
     The wish is recorded with those of the job.
     """
     if given.design is not None:
-        stored_front.row(given.design)
+        stored_front.row_of_design(given.design)
     solved = wish_result(
-        stored_front.wish_starts.wish(given.at, row=None if given.design is None else given.design - 1), given.at
+        stored_front.wish_starts.design_nearest_to_wishes(
+            given.at, row=None if given.design is None else given.design - 1
+        ),
+        given.at,
     )
     record: dict[str, Any] = solved.record(units)
     note_wish(

@@ -12,7 +12,7 @@ ANGLE, SPEED, ACCELERATION = math.radians(-30.0), -15.0, -10.0
 BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 
 
-def linkage(branch: Branch = "open") -> Linkage:
+def case_linkage(branch: Branch = "open") -> Linkage:
     """Return the mechanism."""
     return Linkage(3.0, 8.0, 2.0, branch)
 
@@ -21,7 +21,7 @@ def computed_values() -> Numbers:
     """Return the exact values by key."""
     exact: dict[str, float] = {}
     for branch in BRANCHES:
-        at = linkage(branch).at(ANGLE, speed=SPEED, acceleration=ACCELERATION)
+        at = case_linkage(branch).at(ANGLE, speed=SPEED, acceleration=ACCELERATION)
         exact |= {
             f"{branch}_position": float(at.slider_position),
             f"{branch}_velocity": float(at.slider_velocity),
@@ -30,13 +30,13 @@ def computed_values() -> Numbers:
             f"{branch}_rod_acceleration": float(at.rod_acceleration),
         }
     back = crank_motion(
-        linkage(),
+        case_linkage(),
         exact["open_position"],
         velocity=exact["open_velocity"],
         acceleration=exact["open_acceleration"],
         solution="outward",
     )
-    pin = motion_polygons(linkage(), ANGLE).position[1]
+    pin = motion_polygons(case_linkage(), ANGLE).position[1]
     vertices = len(Polygons.POSITION) + len(Polygons.VELOCITY) + len(Polygons.ACCELERATION)
     given_coordinates = 9  # origin and slider line of each polygon
     return Numbers(

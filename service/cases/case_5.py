@@ -28,19 +28,19 @@ _RPM = 2.0 * math.pi / 60.0
 _TURN = 2.0 * math.pi
 
 
-def linkage(offset: float) -> Linkage:
+def feeder_linkage(offset: float) -> Linkage:
     """Return the feeder for the paper's offset, m."""
     return Linkage(CRANK, ROD, -offset)
 
 
 def rotating_and_reciprocating_mass() -> tuple[float, float]:
     """Return the rotating and the reciprocating mass, kg, with both links split in half as in the paper."""
-    return rotating_and_reciprocating_masses(MACHINE, linkage(0.020))
+    return rotating_and_reciprocating_masses(MACHINE, feeder_linkage(0.020))
 
 
 def exact_torque(offset: float, crank_angle: Array) -> Array:
     """Return the drive torque against the inertia of the reciprocating mass, N m. By virtual work: m3 x_t x_tt / w."""
-    at = linkage(offset).at(crank_angle, speed=SPEED)
+    at = feeder_linkage(offset).at(crank_angle, speed=SPEED)
     torque: Array = rotating_and_reciprocating_mass()[1] * at.slider_velocity * at.slider_acceleration / SPEED
     return torque
 
@@ -49,7 +49,7 @@ def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = 
     """Return the drive torque T = k F_i tan(alpha), N m, in one of its two readings."""
     rotating, reciprocating = rotating_and_reciprocating_mass()
     torque: Array = drive_torque_equation_48(
-        linkage(offset),
+        feeder_linkage(offset),
         crank_angle,
         speed=SPEED,
         rotating_mass=rotating,
@@ -61,7 +61,7 @@ def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = 
 
 def computed_values() -> Numbers:
     """Return the values of the model and those of the paper's formulas, by key."""
-    feeder, half = linkage(0.020), linkage(0.010)
+    feeder, half = feeder_linkage(0.020), feeder_linkage(0.010)
     inner, outer = (float(angle) for angle in feeder.dead_centre_angles)
     forward = (outer - inner) % _TURN
     rotating, reciprocating = rotating_and_reciprocating_mass()
@@ -97,7 +97,7 @@ def computed_values() -> Numbers:
         "experiment_series_max": float(series[0]),
         "experiment_series_min": float(series[1]),
     }
-    centred, at = linkage(0.0), feeder.at(math.radians(30.0), speed=SPEED)
+    centred, at = feeder_linkage(0.0), feeder.at(math.radians(30.0), speed=SPEED)
     sixty = math.radians(60.0)
     exact |= {
         "series_acceleration_0": float(centred.at(0.0, speed=SPEED).slider_acceleration),
@@ -163,7 +163,7 @@ def _greatest_torques() -> dict[str, float]:
             partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN
         )
     for offset in OFFSETS[1:]:
-        inner, outer = (float(angle) for angle in linkage(offset).dead_centre_angles)
+        inner, outer = (float(angle) for angle in feeder_linkage(offset).dead_centre_angles)
         strokes = {
             "forward": (inner, inner + (outer - inner) % _TURN),
             "return": (outer, outer + (inner - outer) % _TURN),

@@ -32,7 +32,9 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
 
 def polygon_figure() -> PanelFigure:
     """Return the polygons of case 1 (its Fig. 2)."""
-    polygons = polygons_by_branch(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
+    polygons = polygons_by_branch(
+        case_1.case_linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION
+    )
     return polygon_panels(
         polygons,
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
@@ -147,13 +149,13 @@ def offset_figure() -> PanelFigure:
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
     exact, formula = (partial(torque, crank_angle=theta) for torque in (case_5.exact_torque, case_5.formula_torque))
     two_turns = partial(labelled_curves_panel, theta=theta)
-    centred = case_5.linkage(0.0)
+    centred = case_5.feeder_linkage(0.0)
     series = series_torque(
         centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.rotating_and_reciprocating_mass()[1]
     )
 
     def acceleration(offset: float) -> Array:
-        acceleration_m_s2: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
+        acceleration_m_s2: Array = case_5.feeder_linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
         return acceleration_m_s2
 
     def offsets_panel(title: str, curve: Callable[[float], Array]) -> Panel:

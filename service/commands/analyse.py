@@ -30,9 +30,9 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, print_message, print_output, show_activity
-from .design_of_job_or_run import machine_of
+from .design_of_job_or_run import machine_from_arguments
 from .exit_and_interruption import INTERRUPTED, Interruption
-from .question_options import option_of
+from .question_options import option_of_input
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _TOPIC_HELP = f"Topics to show in addition: {', '.join(TOPICS)}, or {ALL}."
-_INPUT_OPTIONS = tuple(map(option_of, INPUTS.values()))
+_INPUT_OPTIONS = tuple(map(option_of_input, INPUTS.values()))
 
 
 @dataclass(frozen=True)
@@ -93,14 +93,14 @@ def analyse(
     require_ending("--cycle", files.cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(inputs, topics)
-    mechanism, linkage, problem = machine_of(
+    mechanism, linkage, problem = machine_from_arguments(
         "analyse", job, setting, setting.design, runs, replaced_values=setting.replaced_values or (), turning=True
     )
     if setting.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(setting.speed))
     custom = () if problem is None else problem.own
     row, undefined = quantities_of_design(mechanism, linkage, custom)
-    notes = _remove_undefined(row, mechanism, alone=problem is None)
+    notes = _remove_undefined_numbers(row, mechanism, alone=problem is None)
     with Interruption() as interruption:
         analysis = analysis_of(
             row,
@@ -110,7 +110,7 @@ def analyse(
             further_topics=() if files.measured is None else (_measured_question(files.measured, mechanism, linkage),),
             options=options,
             notes=notes,
-            cancelled=interruption.requested,
+            cancelled=interruption.is_requested,
             lenient=True,
             undefined=None if problem is None else undefined,
         )
@@ -126,9 +126,9 @@ def analyse(
         show_analysis(screen, analysis, judgement, units, custom=custom, hint=hint)
     for note in analysis.notes + (analysis.refused if ALL in (show or ()) else []):
         print_message(note)
-    if files.figures is not None and not interruption.requested():
+    if files.figures is not None and not interruption.is_requested():
         _draw_design_figures(problem, mechanism, linkage, row, analysis.topics, files.figures, units)
-    if interruption.requested():
+    if interruption.is_requested():
         raise typer.Exit(INTERRUPTED)
     if analysis.refused and ALL not in (show or ()):
         raise InputError("; ".join(analysis.refused))
@@ -187,7 +187,7 @@ def _write_cycle_csv(mechanism: Mechanism, linkage: Linkage, file: Path, units: 
     print_message(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")
 
 
-def _remove_undefined(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
+def _remove_undefined_numbers(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
     """Remove numbers that are undefined without a job or a speed; return the reasons in words."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES

@@ -16,13 +16,13 @@ from ...objectives.kinds import System
 from ..designs.design_selection_options import require_single_choice
 from ..designs.display_units import convert_result
 from ..designs.rotating_crank import require_rotating_crank
-from ..designs.selection import chosen_rows, no_match_message, plain_number
+from ..designs.selection import no_match_message, plain_number, rows_meeting_conditions
 from ..jobs.stores import find_run
 from ..runs.result import Result
 from ..runs.run_folder import runs_folder
 from ..runs.runs_on_disk import problem_of, read_run
 from ..text.options import Dimensions, Pick
-from .exit_and_interruption import NoDesigns, end_without_design
+from .exit_and_interruption import NoDesigns, exit_without_design
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -40,7 +40,7 @@ class Machine(NamedTuple):
     problem: Problem | None
 
 
-def machine_of(
+def machine_from_arguments(
     command: str,
     job: Path | None,
     size: Dimensions,
@@ -144,14 +144,14 @@ def front_of_run(
 
     Raises `InputError` if there is no design with this number, `NoDesigns` if there is none at all.
     """
-    from ..designs.stored_designs import front_of
+    from ..designs.stored_designs import front_of_result
 
     folder, result = folder_and_result(name, runs)
     if not (result.designs or empty):
         raise NoDesigns(result)
     if number is not None:
         require_single_choice(number, result, has_other_choice=False)
-    return folder, front_of(problem_of(folder, result), result)
+    return folder, front_of_result(problem_of(folder, result), result)
 
 
 def result_in_units(result: Result, units: System, folder: Path | None) -> Result:
@@ -178,7 +178,7 @@ Where = Annotated[
 class Choice(Pick):
     """Options that select one design of a run."""
 
-    def design_number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
+    def selected_design_number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
         """Return the number of the design that the options select, counted from 1.
 
         Exits with code 3 if no design meets the conditions. Raises `NoDesigns` for an empty front, and `InputError` for
@@ -191,7 +191,7 @@ class Choice(Pick):
             return self.design
         if not self.chooses_by_value:
             raise InputError("choose one design with --design NO, --knee, --topsis or --lexicographic; got none")
-        row = self.row(result, chosen_rows(result, conditions or []))
+        row = self.row(result, rows_meeting_conditions(result, conditions or []))
         if row is None:
-            end_without_design(no_match_message(result, conditions or []))
+            exit_without_design(no_match_message(result, conditions or []))
         return row + 1

@@ -92,8 +92,8 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
     return [
         *_check_store(address, named),
         _check_writable("runs", runs),
-        *([] if "://" in address else [_free_space("disk of the store", Path(address).parent)]),
-        _free_space("disk of runs", runs),
+        *([] if "://" in address else [_check_free_space("disk of the store", Path(address).parent)]),
+        _check_free_space("disk of runs", runs),
         _check_compiled_model(),
         _check_versions(),
     ]
@@ -209,7 +209,7 @@ def _check_writable(name: str, folder: Path) -> Check:
     return Check(name, "ok", f"{folder} is writable")
 
 
-def _free_space(name: str, folder: Path) -> Check:
+def _check_free_space(name: str, folder: Path) -> Check:
     free = shutil.disk_usage(_nearest_existing(folder.absolute())).free
     grade: Grade = "problem" if free < _LEAST_SPACE else "note" if free < _LITTLE_SPACE else "ok"
     remedy = "" if grade == "ok" else "; free some space: a full disk stops all writing"

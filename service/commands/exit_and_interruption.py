@@ -44,7 +44,7 @@ def print_infeasible_as_json(command: Callable[..., None]) -> Callable[..., None
     return run
 
 
-def end_without_design(message: str) -> NoReturn:
+def exit_without_design(message: str) -> NoReturn:
     """End a command if its search found no design, or no design meets the conditions."""
     print_message(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
@@ -61,7 +61,7 @@ class Interruption:
         self._requested = False
         self._before: dict[int, Any] = {}
 
-    def requested(self) -> bool:
+    def is_requested(self) -> bool:
         """Whether to stop."""
         return self._requested
 

@@ -9,7 +9,7 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, column_key_in_system, count_with_noun
 from ..designs.columns import find_columns
-from ..designs.selection import no_match_message, numbered_rows, result_part
+from ..designs.selection import no_match_message, numbered_rows, result_with_rows
 from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import slug, write_file
@@ -18,7 +18,7 @@ from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Selection
 from ..text.screen import console, print_message, print_output, show_activity
 from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
 from .design_of_job_or_run import Choice, Where, folder_and_result, result_in_units
-from .exit_and_interruption import NoDesigns, end_without_design
+from .exit_and_interruption import NoDesigns, exit_without_design
 from .optimise import show_files
 
 
@@ -44,7 +44,11 @@ def front(
         raise NoDesigns(result)
     chosen_columns = find_columns(columns, list(result.designs[0])) if columns else None
     chosen, conditions = selection.rows(result), selection.where
-    picked = choice.row(result, chosen) if choice.design is None else choice.design_number(result, run, conditions) - 1
+    picked = (
+        choice.row(result, chosen)
+        if choice.design is None
+        else choice.selected_design_number(result, run, conditions) - 1
+    )
     if picked is not None:
         chosen = [picked]
     shows_trade_offs = not conditions and (
@@ -58,7 +62,7 @@ def front(
         )
         names = [column.key for column in listed_columns]
     if json:
-        record = result_part(result, chosen).record(names)
+        record = result_with_rows(result, chosen).record(names)
         print_output(json_text(record if picked is None else {**record, "number": picked + 1}))
     elif picked is not None:
         screen = console()
@@ -77,7 +81,7 @@ def front(
         )
         show_front(screen, result, chosen, columns=listed_columns, limit=rows)
     if not chosen:
-        end_without_design(no_match_message(result, conditions or []))
+        exit_without_design(no_match_message(result, conditions or []))
 
 
 _FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
@@ -161,17 +165,17 @@ def export(
     contents: dict[Path, bytes] = {}
     if files:
         of_table = choice.design is not None and tables.is_any_requested
-        number = choice.design_number(result, run, None if of_table else conditions)
+        number = choice.selected_design_number(result, run, None if of_table else conditions)
         stored = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}
         with show_activity("drawing"):
             contents = {file: design_file(option[2:], stored, angle, units, **named) for option, file in files.items()}
     chosen = selection.rows(result) if result.designs else []
     if conditions and not chosen:
-        end_without_design(no_match_message(result, conditions))
+        exit_without_design(no_match_message(result, conditions))
     run_in_units = result_in_units(result, units, None if json is None else folder)
     has_every_design = chosen == list(range(len(result.designs)))
-    record = (run_in_units if has_every_design else result_part(run_in_units, chosen)).record()
+    record = (run_in_units if has_every_design else result_with_rows(run_in_units, chosen)).record()
     if not has_every_design:
         record["numbers"] = [row + 1 for row in chosen]
     for target, text in ((csv, csv_text(numbered_rows(run_in_units.designs, chosen))), (json, json_text(record))):
@@ -207,7 +211,7 @@ def report(
         raise InputError(f"with --pdf the file name must end in .pdf; got --out {out}; rename it, or leave --pdf out")
     require_ending("--out", out, ".html", ".htm", ".pdf")
     folder, result = folder_and_result(run, runs)
-    number = choice.design_number(result, run, where)
+    number = choice.selected_design_number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")

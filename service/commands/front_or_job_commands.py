@@ -21,8 +21,8 @@ from ..runs.run_folder import translate_disk_errors, write_file
 from ..text.options import Figures, JobFile, Json, Number, Run, Runs, Units
 from ..text.screen import console, print_message, print_output, print_record, show_activity, write_figure
 from .design_of_job_or_run import folder_and_result, front_of_run, rotating_problem
-from .exit_and_interruption import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, end_without_design
-from .question_options import options_of, search_listener, with_question_help
+from .exit_and_interruption import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, exit_without_design
+from .question_options import options_of_question, search_listener, with_question_help
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +36,7 @@ LIKE, ROUND, CERTIFY, COMPARE, SWEEP = (
 def like(
     run: Run,
     number: Number,
-    inputs: Annotated[dict[str, Any], options_of(LIKE)],
+    inputs: Annotated[dict[str, Any], options_of_question(LIKE)],
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
@@ -50,14 +50,14 @@ def like(
     elif nearest.is_satisfied:
         print_blocks(console(), nearest.blocks, units)
     if not nearest.is_satisfied:
-        end_without_design(nearest.message)
+        exit_without_design(nearest.message)
 
 
 @with_question_help(ROUND, "The exit code is then 3. Ctrl-C ends the search.")
 def round(
     run: Run,
     number: Number,
-    inputs: Annotated[dict[str, Any], options_of(ROUND)],
+    inputs: Annotated[dict[str, Any], options_of_question(ROUND)],
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
@@ -74,7 +74,7 @@ def round(
         for note in rounded.notes:
             print_message(f"note: {note}")
     if not rounded.is_satisfied:
-        end_without_design(record["message"] + _allowance_options(record["designs"]))
+        exit_without_design(record["message"] + _allowance_options(record["designs"]))
 
 
 def _allowance_options(designs: list[dict[str, Any]]) -> str:
@@ -85,13 +85,13 @@ def _allowance_options(designs: list[dict[str, Any]]) -> str:
             largest_miss.get(miss["quantity"], (0.0, "")), (miss["amount"], miss["unit"])
         )
     options = [
-        f'--allow "{name}={f"{_rounded_up(amount):g} {unit}".rstrip()}"'
+        f'--allow "{name}={f"{_rounded_up_to_one_digit(amount):g} {unit}".rstrip()}"'
         for name, (amount, unit) in largest_miss.items()
     ]
     return f", such as {' '.join(options)}" if options else ""
 
 
-def _rounded_up(amount: float) -> float:
+def _rounded_up_to_one_digit(amount: float) -> float:
     """Return an amount rounded up to one significant digit."""
     size = 10.0 ** math.floor(math.log10(amount))
     return math.ceil(amount / size) * size
@@ -104,14 +104,14 @@ def _rounded_up(amount: float) -> float:
 )
 def certify(
     run: Run,
-    inputs: Annotated[dict[str, Any], options_of(CERTIFY)],
+    inputs: Annotated[dict[str, Any], options_of_question(CERTIFY)],
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Answer the question, save the certificate, and set the exit code to whether the accuracy is proven."""
     folder, front = front_of_run(run, runs, empty=True)
-    with Interruption() as interruption, search_listener("bounding the design box", interruption.requested) as watch:
+    with Interruption() as interruption, search_listener("bounding the design box", interruption.is_requested) as watch:
         certificate = CERTIFY.ask(front, inputs, words=CERTIFY.flags, listener=watch)
     place, file_lines = {"run": path_text(folder)}, list[str]()
     if len(front):
@@ -128,7 +128,7 @@ def certify(
             screen.print(line, soft_wrap=True)
 
     print_record(json, place | certificate.record(units), show)
-    if interruption.requested() and len(front):
+    if interruption.is_requested() and len(front):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if certificate.is_satisfied else NOT_PROVEN)
 
@@ -136,7 +136,7 @@ def certify(
 @with_question_help(COMPARE)
 def compare(
     run: Annotated[list[str], typer.Argument(metavar="RUN..."), "Two or more runs, named as in `front`."],
-    inputs: Annotated[dict[str, Any], options_of(COMPARE)],
+    inputs: Annotated[dict[str, Any], options_of_question(COMPARE)],
     figures: Annotated[Figures, "Also draw the fronts, in this folder."] = None,
     runs: Runs = None,
     units: Units = "metric",
@@ -189,7 +189,7 @@ def _draw_comparison(compared: Sequence[tuple[ComparedRun, Result]], folder: Pat
 def sweep(
     job: Annotated[JobFile, "Job file, .toml or .json."],
     *,
-    inputs: Annotated[dict[str, Any], options_of(SWEEP)],
+    inputs: Annotated[dict[str, Any], options_of_question(SWEEP)],
     figures: Annotated[Figures, "Save a figure of the sweep as sweep.png in this folder."] = None,
     units: Units = "metric",
     json: Json = False,

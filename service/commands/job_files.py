@@ -88,9 +88,9 @@ def quantities(
 
     Explains meaning, formula, unit and column, and the data that a job must contain.
     """
-    from ..designs.quantity_facts import facts_of_all
+    from ..designs.quantity_facts import facts_of_all_quantities
 
-    facts = {item["name"]: item for item in facts_of_all()}
+    facts = {item["name"]: item for item in facts_of_all_quantities()}
     for name in names or ():
         if name not in facts:
             from ...objectives.units import closest_word

@@ -87,7 +87,7 @@ def optimise(
         raise InputError(
             "give either a job, or a run with --resume; got both; leave one out" if job else _NOTHING_GIVEN
         )
-    if resume is not None and settings.overrides:
+    if resume is not None and settings.stated_settings:
         raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
         import_extra("matplotlib", "figures need")
@@ -109,7 +109,7 @@ def optimise(
         run.log(f"job {claim.job.id} in store {jobs.name}" if listed else "in a temporary store")
         with progress_bar() as show:
             front = search(
-                opened_run, opened.enter_context(engine_of(options)), cancelled=interruption.requested, show=show
+                opened_run, opened.enter_context(engine_of(options)), cancelled=interruption.is_requested, show=show
             )
         with show_activity("writing the designs"):
             result = save_result(opened_run, front)
@@ -135,7 +135,7 @@ def optimise(
         print_message('no figures drawn: they need the extra "figures": pip install "slidercrank[figures]"')
     if result.status == "cancelled" and again:
         print_message(f"continue with: {again}")
-    raise typer.Exit(INTERRUPTED if interruption.requested() else EXIT_CODES[result.status])
+    raise typer.Exit(INTERRUPTED if interruption.is_requested() else EXIT_CODES[result.status])
 
 
 @contextlib.contextmanager
@@ -172,15 +172,15 @@ def show_files(run: Path) -> None:
 def _problem_with_settings(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
     """Return the problem of a job file and its tables, both with the given options applied, and its files."""
     from ...optimise.job import load_job, needed_files, read_job
-    from ...optimise.job.job_notes import notes_of
+    from ...optimise.job.job_notes import job_notes
     from ..workers.direct_search import job_and_attached_files, with_settings
 
     problem, tables = load_job(job), read_job(job)
-    for note in notes_of(tables):
+    for note in job_notes(tables):
         print_message(f"note: {note}")
     with translate_disk_errors(job.parent):
         files = job_and_attached_files(job, needed_files(job))
-    return *with_settings(problem, tables, settings.overrides), files
+    return *with_settings(problem, tables, settings.stated_settings), files
 
 
 def _problem_to_resume(tables: Mapping[str, Any], folder: Path) -> Problem:
@@ -195,6 +195,6 @@ def _draw_front_figures(front: ParetoFront, run: RunFolder, interruption: Interr
     with show_activity("drawing the figures"), translate_disk_errors(run.figures):
         for file in write_front_figures(front, run.figures, units):
             run.log(f"figures/{file.name}")
-            if interruption.requested():
+            if interruption.is_requested():
                 run.log("interrupted; the remaining figures are not drawn")
                 return

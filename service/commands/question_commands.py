@@ -25,8 +25,8 @@ from ..text.options import (
     require_matplotlib,
 )
 from ..text.screen import print_message, print_record, show_activity, write_figure
-from .design_of_job_or_run import machine_of, rotating_problem
-from .question_options import option_of
+from .design_of_job_or_run import machine_from_arguments, rotating_problem
+from .question_options import option_of_input
 
 
 def build_design_command(name: str) -> Callable[..., None]:
@@ -47,7 +47,7 @@ def build_design_command(name: str) -> Callable[..., None]:
         curves, figure = files.get("curves"), require_matplotlib(files.get("figure"))
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
-        mechanism, linkage, problem = machine_of(name, job, size, design, runs)
+        mechanism, linkage, problem = machine_from_arguments(name, job, size, design, runs)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.bind_to_problem(mechanism, linkage, problem, inputs, words)
         notes = _print_result(bound_question, units, json)
@@ -66,7 +66,7 @@ def build_design_command(name: str) -> Callable[..., None]:
     command.__doc__ = f"{says.help} {says.alone}"
     command.__annotations__ |= {
         "job": Annotated[JobOrRun, says.job],
-        "inputs": Annotated[dict[str, Any], tuple(map(option_of, question.inputs))],
+        "inputs": Annotated[dict[str, Any], tuple(map(option_of_input, question.inputs))],
         "files": Annotated[dict[str, Any], tuple(written)],
     }
     return command
@@ -107,7 +107,7 @@ def build_sizing_command(name: str) -> Callable[..., None]:
     command.__doc__ = says.help
     command.__annotations__ |= {
         "job": Annotated[JobFile, says.job],
-        "inputs": Annotated[dict[str, Any], tuple(map(option_of, question.inputs))],
+        "inputs": Annotated[dict[str, Any], tuple(map(option_of_input, question.inputs))],
         "files": Annotated[dict[str, Any], tuple(written)],
     }
     return command

@@ -14,7 +14,7 @@ from ..text.screen import show_activity
 _Command = Callable[..., None]
 
 
-def option_of(item: Input) -> inspect.Parameter:
+def option_of_input(item: Input) -> inspect.Parameter:
     """Return the command-line option for an input."""
     least, has_default = None, False
     if isinstance(item, PlainInput):
@@ -25,7 +25,7 @@ def option_of(item: Input) -> inspect.Parameter:
         kind = str if item.loose else item.words or str
         default, metavar, text = None, item.name.upper() if item.loose else None, item.remark
         if item.kind is not None:
-            metavar = item.kind.plain.upper().replace(" ", "_")
+            metavar = item.kind.name_without_article.upper().replace(" ", "_")
     return inspect.Parameter(
         item.name,
         inspect.Parameter.KEYWORD_ONLY,
@@ -37,9 +37,9 @@ def option_of(item: Input) -> inspect.Parameter:
     )
 
 
-def options_of(question: FrontOrJobQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
+def options_of_question(question: FrontOrJobQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
     """Return the options for all inputs. optional: whether the command works without them."""
-    options = tuple(map(option_of, question.inputs))
+    options = tuple(map(option_of_input, question.inputs))
     return tuple(option.replace(default=None) for option in options) if optional else options
 
 

@@ -109,7 +109,7 @@ def worker(
             opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
-            while not (termination.requested() or supervisor.is_finished()):
+            while not (termination.is_requested() or supervisor.is_finished()):
                 time.sleep(0.1)
 
 
@@ -155,7 +155,7 @@ def serve(
     """
     from ..api.app import MODULES, computing_app, create_app
     from ..api.computing import Computing
-    from ..api.server import host_names_of, listen, run_server, url_of
+    from ..api.server import accepted_host_names, browser_url, listening_socket, run_server
     from ..api.settings import Settings
     from ..workers.heartbeat import end_children
     from ..workers.supervisor import Supervisor
@@ -165,12 +165,12 @@ def serve(
     work = options.worker_settings(store_address(store), engine, processes)
     settings = Settings(
         token=secret,
-        hosts=(*host_names_of(host), *(access.allow_host or ())),
+        hosts=(*accepted_host_names(host), *(access.allow_host or ())),
         submissions_per_minute=access.submissions,
         allowed_quantities=frozenset(work.terms.allowed_quantities),
         limits=work.terms.limits,
     )
-    with Interruption(service=True) as termination, listen(host, port) as socket, open_store(store) as opened:
+    with Interruption(service=True) as termination, listening_socket(host, port) as socket, open_store(store) as opened:
         opened.require_writable()
         analysing = partial(
             computing_app, work.address, settings, most_queued=access.most_queued, log_format=work.log_format
@@ -179,11 +179,11 @@ def serve(
         app = create_app(opened, settings, computing)
         print_output(
             f"slidercrank serves the jobs of {opened.name} at\n"
-            f"  {url_of(host, socket, secret if is_generated else None)}\n"
+            f"  {browser_url(host, socket, secret if is_generated else None)}\n"
         )
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
-            run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.request_stop)
+            run_server(app, socket, stop_requested=termination.is_requested, stopping=supervisor.request_stop)
     end_children()  # the fork server takes half a second to exit on its own
     _exit_despite_requests()
 

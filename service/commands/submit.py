@@ -134,7 +134,7 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
                     return EXIT_CODES["done"]
         ended = store.job(job.id)
         if not json:
-            _print_front(store, ended)
+            _print_front_of_job(store, ended)
     except KeyboardInterrupt:
         print_message(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
         raise
@@ -205,7 +205,7 @@ def event_in_words(event: Event) -> str:
     return " ".join(str(text).split())
 
 
-def _print_front(store: Store, job: Job) -> None:
+def _print_front_of_job(store: Store, job: Job) -> None:
     """Print the front of an ended job, if there is one."""
     from ..text.tables import show_front
 

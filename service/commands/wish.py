@@ -19,8 +19,8 @@ from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, print_output, show_activity
 from .design_of_job_or_run import front_of_run
-from .exit_and_interruption import end_without_design
-from .question_options import options_of, with_question_help
+from .exit_and_interruption import exit_without_design
+from .question_options import options_of_question, with_question_help
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -42,7 +42,7 @@ def wish(
         "Reference design for improve, keep and worsen: its number in `slidercrank front RUN`.",
     ] = None,
     *,
-    inputs: Annotated[dict[str, Any], options_of(QUESTION, optional=True)],
+    inputs: Annotated[dict[str, Any], options_of_question(QUESTION, optional=True)],
     earlier: Annotated[
         bool,
         typer.Option("--list"),
@@ -71,7 +71,7 @@ def wish(
     elif solved.is_satisfied:
         print_blocks(console(), solved.blocks, units)
     if not solved.is_satisfied:
-        end_without_design(solved.message)
+        exit_without_design(solved.message)
 
 
 def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
@@ -87,7 +87,9 @@ def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, j
             assert solver is not None
             words = wishes_as_entered(front, made_wish.wishes)
             row = None if made_wish.design is None else made_wish.design - 1
-            solved_wishes.append((made_wish.time, words, wish_result(solver.wish(words, row=row), words)))
+            solved_wishes.append(
+                (made_wish.time, words, wish_result(solver.design_nearest_to_wishes(words, row=row), words))
+            )
     if json:
         records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
         print_output(json_text({"run": path_text(folder), "made": records}))

@@ -10,13 +10,13 @@ from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.tables.design_input import column_of_variable
-from ...objectives.tables.evaluate_quantities import can_move, evaluated_as_array
-from ...objectives.tables.swing_columns import require_motion
+from ...objectives.tables.evaluate_quantities import designs_that_can_move, quantities_as_array
+from ...objectives.tables.swing_columns import linkage_that_can_move
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of_columns
 from .columns import find_column
-from .design_selection_options import minimised_values, target_scales
+from .design_selection_options import minimised_values, target_magnitudes
 from .judged_requirements import deviations_in_words, ranges_as_requirements, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
@@ -75,7 +75,7 @@ def design_with_numbers(
     if changed.part.motion is None:
         changed.linkage.require_full_rotation()
     else:
-        require_motion(changed.mechanism, changed.linkage, changed.part.motion)
+        linkage_that_can_move(changed.mechanism, changed.linkage, changed.part.motion)
     return changed
 
 
@@ -109,7 +109,7 @@ def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dic
     bounded = np.isfinite(finite).all(axis=1)
     if not bounded.any() or not np.isfinite(values).all():
         return {"dominated_by": [], "dominates": []}
-    span = column_ranges(finite[bounded], size=target_scales(result))
+    span = column_ranges(finite[bounded], size=target_magnitudes(result))
     gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the front design is better
     positions = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):
@@ -184,7 +184,7 @@ def _equality_residuals(design: StoredDesign, equal: list[Constraint], values: A
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
     # Not `Problem.evaluate`, which warns about lengths entered by users: these are intermediate.
-    reached, slopes = evaluated_as_array(
+    reached, slopes = quantities_as_array(
         part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion
     )
     return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
@@ -193,7 +193,7 @@ def _equality_residuals(design: StoredDesign, equal: list[Constraint], values: A
 def _rotates_or_swings(part: Problem, values: Array) -> bool:
     """Return whether a design rotates fully, or swings as far as its job requires."""
     if part.motion is not None:
-        return bool(can_move(part.mechanism, part.motion, values[None])[0])
+        return bool(designs_that_can_move(part.mechanism, part.motion, values[None])[0])
     crank, rod, offset = values[:3]
     return bool(crank > 0.0 and rod > crank + abs(offset))
 

@@ -47,10 +47,10 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     key = _key_of_name(name, keys) if same is None else same
     plain, unit, factor = name_unit_and_factor_of_key(key)
     from ...objectives.quantity import Group
-    from ...objectives.tables.design_input import number_in_words
+    from ...objectives.tables.design_input import words_of_number_name
 
     slack = key.startswith("slack_")
-    words = number_in_words(plain.removeprefix("slack_").removeprefix("choice_"))
+    words = words_of_number_name(plain.removeprefix("slack_").removeprefix("choice_"))
     sufficient = [other.removeprefix("choice_") for other in keys if other.startswith("choice_least_")]
     if any(plain.removeprefix("choice_").startswith(stem) for stem in sufficient):
         words = words.replace("least", "smallest sufficient", 1)
@@ -61,12 +61,12 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         unit,
         factor,
         factor / name_unit_and_factor_of_key(name)[2] if same is not None else None if unit else 1.0,
-        Group.DIMENSIONS if key in choice_column_keys(keys) else _group_of(metric_key(key)),
+        Group.DIMENSIONS if key in choice_column_keys(keys) else _display_group_of_column(metric_key(key)),
     )
 
 
 @functools.cache
-def _group_of(key: str) -> Group:
+def _display_group_of_column(key: str) -> Group:
     """Return the group under which a metric column is shown."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.quantity import Group

@@ -45,7 +45,7 @@ class Limit:
     designs: tuple[int, ...] = ()
 
     @property
-    def words(self) -> str:
+    def limit_in_words(self) -> str:
         """Limit in words, such as "rod at most 400 mm"."""
         return f"{self.title} {_WORDS[self.side]} {_with_unit(self.value, self.unit)}"
 
@@ -56,7 +56,7 @@ def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -
     Values that the job fixes, or requires exactly, are not limits, since every design lies on them.
     """
     variants = range(max(1, len(problem.variants)))
-    limits = {variant: _limits_of(problem.part(variant), tables) for variant in variants}
+    limits = {variant: _all_limits_of_problem(problem.part(variant), tables) for variant in variants}
     variants_of_designs = (
         (result.exact.variants if result.exact is not None else ()) if problem.variants else (0,) * len(result.designs)
     )
@@ -80,7 +80,9 @@ def widen_limits(
 
     Raises `InputError` for a limit that the job does not have, or that no number can replace.
     """
-    limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits_of(part, tables)}
+    limits = {
+        (limit.of, limit.side): limit for part in problem.parts() for limit in _all_limits_of_problem(part, tables)
+    }
     job = deepcopy(dict(tables))
     changes = []
     for limit_path, side, value in new_values:
@@ -106,10 +108,10 @@ def widen_limits(
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
         changes.append(f"{limit.title} {_WORDS[side]} {_with_unit(value, limit.unit)}")
-    return _with_change_in_name(job, ", ".join(changes))
+    return _with_change_in_job_name(job, ", ".join(changes))
 
 
-def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
+def _all_limits_of_problem(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
     """Return every limit of a problem without choices."""
     limits = []
     for path, column, title, unit, low, high in _variable_ranges(part):
@@ -124,7 +126,7 @@ def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
             "unit": unit,
             "size": high - low,
         }
-        for side, value in _stated_sides(low, high):
+        for side, value in _sides_with_bounds(low, high):
             step = _WIDER * (high - low)
             if side == "lower" and value > 0.0:
                 step = min(step, _WIDER * value)  # a length stays a length
@@ -136,7 +138,7 @@ def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
             continue
         stated = isinstance(tables.get("constraints", {}).get(item.quantity, {}), Mapping)
         named: dict[str, Any] = {"column": item.column, "title": item.title, "unit": item.unit}
-        for side, bound in _stated_sides(item.lower, item.upper):
+        for side, bound in _sides_with_bounds(item.lower, item.upper):
             step = _FURTHER * abs(bound)
             changed = (
                 _round_to_step(bound - step if side == "lower" else bound + step, step) if stated and step else None
@@ -163,7 +165,7 @@ def _variable_ranges(part: Problem) -> list[tuple[str, str, str, str, float, flo
     return [(path, *words, factor * ends.lower, factor * ends.upper) for path, *words, ends, factor in ranges]
 
 
-def _stated_sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
+def _sides_with_bounds(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
     ends: tuple[tuple[Side, float | None], ...] = (("lower", lower), ("upper", upper))
     return [(side, bound) for side, bound in ends if bound is not None]
 
@@ -208,10 +210,10 @@ def job_near_lengths(
             margin = share * length_of[name]
         job["variables"][name] = [f"{length_of[name] - margin:.6g} mm", f"{length_of[name] + margin:.6g} mm"]
     sizes = ", ".join(f"{length_of[name]:.4g}" for name in DIMENSIONS)
-    return _with_change_in_name(job, f"near {sizes} mm")
+    return _with_change_in_job_name(job, f"near {sizes} mm")
 
 
-def _with_change_in_name(job: dict[str, Any], change: str) -> dict[str, Any]:
+def _with_change_in_job_name(job: dict[str, Any], change: str) -> dict[str, Any]:
     """Return a job with a change appended to its name, unless the name becomes too long."""
     name = f"{job['name']}, {change}"
     return job | {"name": name} if len(name) <= _LONGEST_NAME else job

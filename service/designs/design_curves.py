@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
@@ -138,7 +138,7 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
     )
 
 
-def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
+def rows_of_swing_curves(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
     """Return a row for each point of both strokes, metric: time, motion, drive, power, joint forces, errors."""
     all_curves = (*motion_and_drive_curves(swing), *force_components())
     rows = []
@@ -205,7 +205,7 @@ def lever_columns(curves: LeverCurves) -> list[tuple[str, str, str, Array]]:
     return columns
 
 
-def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]:
+def rows_of_lever_curves(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]:
     """Return a row for each point of a lever's swing from start to end, metric, at even times."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
     time = {} if swing.duration is None else {"time_s": (swing.duration * found.share).tolist()}
@@ -234,7 +234,7 @@ def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) ->
     return columns
 
 
-def crank_turn_rows(mechanism: Mechanism, linkage: Linkage) -> list[dict[str, Any]]:
+def rows_of_crank_turn_curves(mechanism: Mechanism, linkage: Linkage) -> list[dict[str, Any]]:
     """Return a metric row for each crank angle of a full turn; speeds and forces are at the crank speed."""
     angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
     columns = crank_turn_columns(mechanism, linkage, angles)
@@ -247,8 +247,8 @@ def design_csv(design: StoredDesign, system: System = "metric") -> str:
         return cycle_csv(design.mechanism, design.linkage, system)
     if design.mechanism.lever is not None:
         if design.part.motion.of_full_turn:
-            return curves_csv(convert_rows(crank_turn_rows(design.mechanism, design.linkage), system))
+            return curves_csv(convert_rows(rows_of_crank_turn_curves(design.mechanism, design.linkage), system))
         machine, _ = lever_machine(design.mechanism, design.linkage, design.part.motion)
         swing = lever_swing(design.mechanism, design.linkage, design.part.motion)
-        return curves_csv(convert_rows(lever_rows(machine, swing), system))
-    return curves_csv(convert_rows(swing_rows(design.mechanism, design.linkage, design.part.motion), system))
+        return curves_csv(convert_rows(rows_of_lever_curves(machine, swing), system))
+    return curves_csv(convert_rows(rows_of_swing_curves(design.mechanism, design.linkage, design.part.motion), system))

@@ -50,12 +50,12 @@ def chosen_row(
     order = None if lexicographic is None else _parse_lexicographic_order(lexicographic, result.objectives)
     if not rows:
         return None
-    values, sizes = minimised_values(result)[list(rows)], target_scales(result)
+    values, sizes = minimised_values(result)[list(rows)], target_magnitudes(result)
     if weights is not None:
         return rows[choose_design.topsis(values, weights, size=sizes)]
     if order is not None:
         return rows[choose_design.lexicographic(values, order, size=sizes)]
-    return rows[choose_design.knee(values, size=sizes)]
+    return rows[choose_design.knee_row(values, size=sizes)]
 
 
 def minimised_values(result: Result) -> Array:
@@ -66,7 +66,7 @@ def minimised_values(result: Result) -> Array:
     return np.array(values, dtype=np.float64).reshape(len(result.designs), len(result.objectives))
 
 
-def target_scales(result: Result) -> list[float]:
+def target_magnitudes(result: Result) -> list[float]:
     """Return the targets of objectives, in display units, or 0: the scale for rounding errors in their distances."""
     return [abs(objective.target or 0.0) for objective in result.objectives]
 

@@ -28,7 +28,7 @@ def convert_rows(rows: Sequence[Row], system: System) -> list[Row]:
     if system == "metric" or not rows:
         return list(rows)
     names = {key: column_key_in_system(key, system) for key in rows[0]}
-    return [{names[key][0]: _scaled(value, names[key][1]) for key, value in row.items()} for row in rows]
+    return [{names[key][0]: _scaled_items(value, names[key][1]) for key, value in row.items()} for row in rows]
 
 
 def convert_record(record: Any, system: System) -> Any:
@@ -40,7 +40,9 @@ def convert_record(record: Any, system: System) -> Any:
         return record
     if isinstance(record, Mapping):
         keys = {key: column_key_in_system(key, system) for key in record}
-        return {name: _scaled(convert_record(record[key], system), factor) for key, (name, factor) in keys.items()}
+        return {
+            name: _scaled_items(convert_record(record[key], system), factor) for key, (name, factor) in keys.items()
+        }
     return [convert_record(item, system) for item in record] if isinstance(record, list | tuple) else record
 
 
@@ -70,25 +72,26 @@ def convert_objective(objective: StoredObjective, system: System) -> StoredObjec
 
 
 def _knee_trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
-    from .stored_designs import front_of, stored_design
+    from .stored_designs import front_of_result, stored_design
     from .trade_offs import trade_offs_of
 
     if result.knee is None:
         return []
     try:
         design = stored_design(problem, result, result.knee + 1)
-        return trade_offs_of(front_of(problem, result), result.knee, design, system)
+        return trade_offs_of(front_of_result(problem, result), result.knee, design, system)
     except SlidercrankError:  # they are omitted
         return []
 
 
-def _scaled(value: Any, factor: float) -> Any:
+def _scaled_items(value: Any, factor: float) -> Any:
     if isinstance(value, Mapping):  # a key without a unit, such as a vertex, has the unit of its record
         return {
-            key: item if name_unit_and_factor_of_key(key)[1] else _scaled(item, factor) for key, item in value.items()
+            key: item if name_unit_and_factor_of_key(key)[1] else _scaled_items(item, factor)
+            for key, item in value.items()
         }
     if isinstance(value, list):
-        return [_scaled(item, factor) for item in value]
+        return [_scaled_items(item, factor) for item in value]
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return value * factor if number and factor != 1.0 else value
 

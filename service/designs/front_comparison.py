@@ -26,7 +26,7 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
     shared = _shared_objectives(results)
     if not shared:
         return ["The runs share no objective, so they cannot be ranked"]
-    fronts = [_minimised_shared(result, shared) for result in results]
+    fronts = [_minimised_shared_objectives(result, shared) for result in results]
     span = np.ptp(np.concatenate(fronts), axis=0)
     span[span == 0.0] = 1.0
     sentences = [
@@ -49,7 +49,7 @@ def cost_of_change(names: Sequence[str], results: Sequence[Result], system: Syst
     """
     shared = [item for item in _shared_objectives(results) if item.target is None] if len(results) == 2 else []
     words: dict[str, list[str]] = {"costs": [], "gains": [], "does not change": []}
-    best = [_minimised_shared(result, shared).min(axis=0).tolist() for result in results] if shared else [[], []]
+    best = [_minimised_shared_objectives(result, shared).min(axis=0).tolist() for result in results] if shared else [[], []]
     for objective, old, new in zip(shared, *best, strict=True):
         ends = [_with_unit(value, objective, system) for value in (old, new)]
         if not np.isfinite([old, new]).all():
@@ -66,7 +66,7 @@ def _shared_objectives(results: Sequence[Result]) -> list[StoredObjective]:
     return [item for key, item in kinds[0].items() if all(key in objectives for objectives in kinds[1:])]
 
 
-def _minimised_shared(result: Result, shared: Sequence[StoredObjective]) -> Array:
+def _minimised_shared_objectives(result: Result, shared: Sequence[StoredObjective]) -> Array:
     """Return the shared objectives of a result (n, m), all minimised; infinite if undefined."""
     order = [item.quantity for item in result.objectives]
     values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
@@ -108,7 +108,7 @@ def _unmatched_sentence(
     system: System,
 ) -> list[str]:
     """Return the number of designs of one front that the other does not match, and where they lie."""
-    free = is_unmatched(front, other_front)
+    free = designs_without_match(front, other_front)
     count, total = int(free.sum()), len(front)
     if count == 0:
         return [f"{other_name} matches or beats every design of {name}, {_TO}"]
@@ -123,7 +123,7 @@ def _unmatched_sentence(
     return [f"{name} has {count} of {count_with_noun(total, 'design')} that {other_name} does not match, {_TO}{place}"]
 
 
-def is_unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
+def designs_without_match(front: Array, other_front: Array) -> NDArray[np.bool_]:
     """Return the designs (n, m) that no other design (k, m) matches or beats; scaled objectives, all minimised."""
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 

@@ -78,7 +78,7 @@ class JudgedRule:
     missed_by: float | None
 
     @property
-    def digits(self) -> int:
+    def distinguishing_digits(self) -> int:
         """Significant digits, at least six, that distinguish the value from the bound that it misses."""
         ratio = abs(self.value / self.missed_by) if self.value and self.missed_by else 1.0
         return min(12, max(6, math.ceil(math.log10(ratio)) + 2)) if 0.0 < ratio < math.inf else 6
@@ -131,9 +131,9 @@ def requirements_of(part: Problem, allowed: Mapping[str, float] = MappingProxyTy
 
 def ranges_as_requirements(part: Problem) -> list[Requirement]:
     """Return the ranges of crank, rod, offset and the extra variables, in their units."""
-    from ...objectives.tables.design_input import columns_of_numbers
+    from ...objectives.tables.design_input import columns_of_design_numbers
 
-    columns = columns_of_numbers(part.mechanism.varying)
+    columns = columns_of_design_numbers(part.mechanism.varying)
     ranges = []
     for name, bounds in part.ranges.items():
         column, unit = columns[name]
@@ -187,7 +187,7 @@ def speed_rpm(mechanism: Mechanism) -> float:
     return _RPM * float(mechanism.speed)
 
 
-def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
+def judged_rules_of_design(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
     """Return the ranges of crank, rod and offset and the constraints of a job, evaluated at a design's metric row.
 
     system: unit system of the answer.
@@ -223,13 +223,15 @@ def violations_of(mechanism: Mechanism, row: Row) -> dict[str, float]:
     row: metric row of the design; the returned values are also metric.
     """
     from ...objectives.registry import QUANTITIES
-    from ...objectives.tables.evaluate_quantities import violations
+    from ...objectives.tables.evaluate_quantities import violations_of_allowables
 
     def value_of(name: str) -> float | None:
         value = row.get(QUANTITIES[name].field)
         return value / QUANTITIES[name].unit.factor if isinstance(value, float) else None
 
-    excess_by_quantity = ((QUANTITIES[name], excess) for name, excess in violations(mechanism, value_of).items())
+    excess_by_quantity = (
+        (QUANTITIES[name], excess) for name, excess in violations_of_allowables(mechanism, value_of).items()
+    )
     return {quantity.field: quantity.unit.factor * float(excess[0]) for quantity, excess in excess_by_quantity}
 
 

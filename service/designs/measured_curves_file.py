@@ -30,7 +30,9 @@ def parse_measured_curves(text: str, mechanism: Mechanism, linkage: Linkage) -> 
     names = [name for name in table.heads if name]
     curve_names = meaningful_columns(names, mechanism, linkage, _unit_in_si)
     places = [place for place, name in enumerate(table.heads) if name in curve_names]
-    columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
+    columns = dict(
+        zip((table.heads[place] for place in places), table.number_columns(places, missing=places), strict=True)
+    )
     nothing = np.full(len(table), np.nan)
     measured = samples_of_measured_table(
         {name: columns.get(name, nothing) for name in names}, mechanism, linkage, _unit_in_si

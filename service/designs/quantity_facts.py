@@ -9,7 +9,7 @@ _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source"
 """Facts about a quantity that are passed on unchanged."""
 
 
-def facts_of_all() -> list[dict[str, Any]]:
+def facts_of_all_quantities() -> list[dict[str, Any]]:
     """Return the facts about the dimensions and about every quantity, in display order."""
     from ...objectives.registry import FACTS
 
@@ -19,17 +19,17 @@ def facts_of_all() -> list[dict[str, Any]]:
 def _quantity_record(quantity: Quantity) -> dict[str, Any]:
     return {
         **{fact: getattr(quantity, fact) for fact in _STATED},
-        "needs": quantity.required,
+        "needs": quantity.job_requirements_text,
         "offered": list(quantity.offered),
         "column": quantity.field,
         "unit": quantity.unit.symbol,
-        "kind": quantity.kind.plain,
+        "kind": quantity.kind.name_without_article,
         "group": quantity.group.value,
-        "motion": _motion_of(quantity),
+        "motion": _required_motion(quantity),
     }
 
 
-def _motion_of(quantity: Quantity) -> str:
+def _required_motion(quantity: Quantity) -> str:
     from ...objectives.lever_quantity import LeverQuantity
 
     if isinstance(quantity, LeverQuantity):
@@ -39,7 +39,12 @@ def _motion_of(quantity: Quantity) -> str:
 
 
 _LENGTH: dict[str, Any] = {
-    **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
+    **{
+        "unit": LENGTH.metric.symbol,
+        "kind": LENGTH.name_without_article,
+        "group": Group.DIMENSIONS.value,
+        "source": MECHANICS,
+    },
     **{"better": "", "allowed_by": "", "needs": "", "offered": [], "motion": ""},
 }
 """Facts that all dimensions share."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ...objectives.kinds import Kind, count_with_noun
-from ...objectives.units import is_value, quote, to_si
+from ...objectives.units import is_number_with_any_unit, quote, to_si
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
 
@@ -100,7 +100,7 @@ def _require_name_first(text: str, name: str, comparison: str, value: str) -> No
         if value[0] in "<>=":
             raise InputError(f"a condition must have one of >= <= > < = !=; got {text!r}; write it like {_EXAMPLE}")
         raise InputError(f"a condition may only have one comparison; got {text!r}; give two conditions")
-    if is_value(name):
+    if is_number_with_any_unit(name):
         turned = f"{value} {_TURNED[comparison]} {name.strip()}"
         raise InputError(f'a condition must begin with its quantity or formula; got {text!r}; write it like "{turned}"')
 
@@ -180,7 +180,7 @@ def sort_key(cell: Cell) -> tuple[bool, float, str]:
     return (False, 0.0, cell) if isinstance(cell, str) else (False, float(cell), "")
 
 
-def chosen_rows(
+def rows_meeting_conditions(
     result: Result, conditions: Collection[str], *, sort: str | None = None, reverse: bool = False
 ) -> list[int]:
     """Return the positions of the designs that meet all conditions.
@@ -207,7 +207,7 @@ def numbered_rows(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> l
     return [{"number": row + 1, **rows[row]} for row in (range(len(rows)) if chosen is None else chosen)]
 
 
-def result_part(result: Result, rows: Sequence[int]) -> Result:
+def result_with_rows(result: Result, rows: Sequence[int]) -> Result:
     """Return the result with only these designs and the marks among them."""
     place = {row: index for index, row in enumerate(rows)}
     knee = place.get(result.knee) if result.knee is not None else None

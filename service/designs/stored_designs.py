@@ -46,7 +46,7 @@ class StoredDesign:
         return Linkage(crank, rod, offset, self.mechanism.branch)
 
 
-def design_of(problem: Problem, row: Row) -> StoredDesign:
+def design_of_row(problem: Problem, row: Row) -> StoredDesign:
     """Return a design from its row in the table of a problem's front; its displayed dimensions are unchanged.
 
     Raises `RunError` for a row that does not belong to the problem.
@@ -57,15 +57,15 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
 
 
 def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
-    """Return a design of a result by its number, counted from 1: exact if stored so, otherwise as by `design_of`."""
+    """Return a design of a result by its number from 1: exact if stored so, otherwise as by `design_of_row`."""
     if result.exact is None:
-        return design_of(problem, result.designs[number - 1])
+        return design_of_row(problem, result.designs[number - 1])
     variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
     variant = variants[number - 1] if variants else 0
     return StoredDesign(problem.part(variant), values, variant)
 
 
-def front_of(problem: Problem, result: Result) -> ParetoFront:
+def front_of_result(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, the derivatives at the designs are unknown."""
     from .design_selection_options import minimised_values
 
@@ -108,7 +108,7 @@ def _matching_variant(problem: Problem, row: Row, values: Sequence[float]) -> in
     """Return the index of the variant with a design's labels; if several match, the one with the nearest ranges."""
     if not problem.variants:
         return 0
-    labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
+    labels = tuple(_cell_of_column(row, choice_field(name)) for name in problem.choices)
     matching = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
     if not matching:
         raise _foreign_run_error(f"its job has nothing called {' with '.join(map(str, labels))}")
@@ -136,7 +136,7 @@ def _variable_values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...
 
 def _si_value(row: Row, key: str, factor: float) -> float:
     """Return the number whose product with the factor is exactly the displayed value."""
-    displayed = _cell(row, key)
+    displayed = _cell_of_column(row, key)
     if not isinstance(displayed, float) or not math.isfinite(displayed):
         raise _foreign_run_error(f"its {key} is {displayed}")
     value = displayed / factor
@@ -144,7 +144,7 @@ def _si_value(row: Row, key: str, factor: float) -> float:
     return next((item for item in near if factor * item == displayed), value)
 
 
-def _cell(row: Mapping[str, Cell], key: str) -> Cell:
+def _cell_of_column(row: Mapping[str, Cell], key: str) -> Cell:
     if key not in row:
         raise _foreign_run_error(f"it has no column {key}")
     return row[key]

@@ -17,8 +17,8 @@ _NEAR = 1e-9  # relative accuracy to which a point of the unit box must reproduc
 def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
     """Return sentences on the cost of each objective in terms of the others at a design.
 
-    Its active constraints are held. front: front from `front_of`. row: row of the design in it. system: unit system of
-    the sentences.
+    Its active constraints are held. front: front from `front_of_result`. row: row of the design in it. system: unit
+    system of the sentences.
 
     Raises `InputError` if there are no such rates: a single objective, an objective without gradient, or a design that
     does not meet its constraints.
@@ -63,5 +63,5 @@ def _unit_box_point(branch: EliminationBranch, values: Array) -> Array | None:
     free = np.array([unknowns[branch.names.index(name)] for name in branch.free])
     point = np.clip((free - branch.lower) / (branch.upper - branch.lower), 0.0, 1.0)
     scale = np.concatenate([np.full(3, sizes[:3].max()), sizes[3:]])
-    near = np.abs(branch.dimensions(point)[0] - values) <= _NEAR * scale
+    near = np.abs(branch.designs_at_points(point)[0] - values) <= _NEAR * scale
     return np.asarray(point) if near.all() else None

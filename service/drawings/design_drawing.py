@@ -13,7 +13,7 @@ from ...objectives.kinds import System, metric_unit_in
 from ..designs.length_with_tolerance import tolerances_of
 from ..designs.stored_designs import StoredDesign
 from . import layers as on
-from .dimensions import Lettering, aligned_dimension, dimension
+from .dimensions import Lettering, aligned_dimension, dimension_along_angle
 from .lever_drawing import lever_drawing
 from .linkage_shapes import (
     LinkageSizes,
@@ -64,7 +64,7 @@ def linkage_drawing(
     `AssemblyError` for a linkage that does not rotate fully.
     """
     look = linkage_sizes(mechanism, linkage)
-    size, tolerances = look.size, tolerances_of(mechanism, linkage)
+    size, tolerances = look.longer_side, tolerances_of(mechanism, linkage)
     pin, slider = pin_positions(linkage, crank_angle)
     shapes: list[Shape] = [
         *fixed_shapes(linkage, look, bearing_below=pin[1] >= 0.0),
@@ -97,7 +97,7 @@ def swing_drawing(
     drawn = swing_sizes(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)
     pin, slider = pin_positions(drawn.linkage, angle)
-    letters, tolerances = Lettering(TEXT * drawn.look.size, system), tolerances_of(mechanism, drawn.linkage)
+    letters, tolerances = Lettering(TEXT * drawn.look.longer_side, system), tolerances_of(mechanism, drawn.linkage)
     shapes: list[Shape] = [
         *fixed_swing_shapes(drawn),
         *moving_swing_shapes(drawn, angle),
@@ -105,7 +105,7 @@ def swing_drawing(
     ]
     notes = _swing_notes(drawn, angle, tolerances, system)
     return with_title(
-        on.SWING_LAYERS, shapes, drawn.extent, drawn.look.size, f"{name}, {design}" if design else name, notes
+        on.SWING_LAYERS, shapes, drawn.extent, drawn.look.longer_side, f"{name}, {design}" if design else name, notes
     )
 
 
@@ -113,7 +113,7 @@ def _angle_in_swing(swing: Swing, angle: float | None) -> float:
     """Return a crank angle shifted by full revolutions into a swing."""
     if angle is None:
         return 0.5 * (swing.start + swing.end)
-    angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.angles_within(angle + near)]
+    angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.equal_angles_within_swing(angle + near)]
     if not angles:
         start, end, requested = (math.degrees(at) for at in (swing.start, swing.end, angle))
         raise InputError(
@@ -130,18 +130,18 @@ def _stroke_dimensions(
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     outside = max(look.crank + 0.5 * look.crank_width, side * look.offset + 0.72 * look.block)
     through = (look.inner[0], side * (outside + 3.0 * letters.height))
-    stroke = dimension("stroke", look.inner, look.outer, through, 0.0, look=letters)
-    return _dimensions(pin, slider, look, stroke, letters, tolerances, left=look.extent[0])
+    stroke = dimension_along_angle("stroke", look.inner, look.outer, through, 0.0, look=letters)
+    return _skeleton_and_dimensions(pin, slider, look, stroke, letters, tolerances, left=look.extent[0])
 
 
 def _swing_dimensions(
     drawn: SwingSizes, angle: float, pin: Point, slider: Point, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
     """Return the skeleton and the dimension lines of a swing, with travel outside and angle inside."""
-    look, swing, height, bend = drawn.look, drawn.swing, letters.height, _outer_side(pin, slider)
+    look, swing, height, bend = drawn.look, drawn.swing, letters.height, _side_outside_bend(pin, slider)
     left, low, _, high = drawn.extent
-    through = (look.inner[0], low - 3.0 * height if drawn.bearing_below else high + 3.0 * height)
-    travel = dimension("travel", look.inner, look.outer, through, 0.0, look=letters)
+    through = (look.inner[0], low - 3.0 * height if drawn.is_bearing_below else high + 3.0 * height)
+    travel = dimension_along_angle("travel", look.inner, look.outer, through, 0.0, look=letters)
     body = -math.inf if drawn.body is None else bend * drawn.body[1] + half_body_side(look)
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
@@ -149,10 +149,10 @@ def _swing_dimensions(
     place, arc_end = arc.point_at(first + share * (last - first)), arc.point_at(math.degrees(angle))
     anchor: Anchor = "start" if place[0] > arc_end[0] else "end"  # the text runs away from the crank
     text = Label(on.DIMENSIONS, f"{last - first:.6g} deg", place, height, anchor=anchor)
-    return [*_dimensions(pin, slider, look, travel, letters, tolerances, left=left, body=body), arc, text]
+    return [*_skeleton_and_dimensions(pin, slider, look, travel, letters, tolerances, left=left, body=body), arc, text]
 
 
-def _dimensions(
+def _skeleton_and_dimensions(
     pin: Point,
     slider: Point,
     look: LinkageSizes,
@@ -167,7 +167,7 @@ def _dimensions(
 
     left: left end of the drawing. body: outer edge of a body on the crank, on the side of the crank's dimension.
     """
-    height, bend = letters.height, _outer_side(pin, slider)
+    height, bend = letters.height, _side_outside_bend(pin, slider)
     crank_side, rod_side = max(0.5 * look.crank_width, body) + 2.2 * height, 0.5 * look.rod_width + 2.2 * height
     crank, rod, offset = (tolerances.get(name, 0.0) for name in DIMENSIONS)
     shapes: list[Shape] = [
@@ -179,11 +179,11 @@ def _dimensions(
     ]
     if look.offset:
         ends, through = ((left, 0.0), (left, look.offset)), (left - 3.0 * height, 0.0)
-        shapes.append(dimension("offset", *ends, through, 90.0, look=letters, tolerance=offset))
+        shapes.append(dimension_along_angle("offset", *ends, through, 90.0, look=letters, tolerance=offset))
     return shapes
 
 
-def _outer_side(pin: Point, slider: Point) -> float:
+def _side_outside_bend(pin: Point, slider: Point) -> float:
     """Return the side of the crank and the rod, 1 for the left, that lies outside the bend between them."""
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 

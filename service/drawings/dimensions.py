@@ -25,7 +25,7 @@ class Lettering:
         return metric_unit_in("mm", self.system)[1]
 
 
-def dimension(
+def dimension_along_angle(
     name: str,
     start: Point,
     end: Point,
@@ -42,7 +42,7 @@ def dimension(
     """
     turn, height = math.radians(angle), look.height
     direction, normal = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
-    feet = [_shifted(through, direction, _dot(_difference(point, through), direction)) for point in (start, end)]
+    feet = [_shifted_along(through, direction, _dot(_difference(point, through), direction)) for point in (start, end)]
     if _dot(feet[1], direction) < _dot(feet[0], direction):
         feet.reverse()
         start, end = end, start
@@ -56,24 +56,26 @@ def dimension(
         distance = math.dist(point, foot)
         if distance > _GAP * height:
             unit = ((foot[0] - point[0]) / distance, (foot[1] - point[1]) / distance)
-            first, last = _shifted(point, unit, _GAP * height), _shifted(foot, unit, _BEYOND * height)
+            first, last = _shifted_along(point, unit, _GAP * height), _shifted_along(foot, unit, _BEYOND * height)
             parts.append(Line(DIMENSIONS, first, last))
     side = 1.0 if fits else -1.0
     for foot, out in ((feet[0], side), (feet[1], -side)):
-        base = _shifted(foot, direction, out * arrow)
-        corners = (foot, _shifted(base, normal, arrow / 6.0), _shifted(base, normal, -arrow / 6.0))
+        base = _shifted_along(foot, direction, out * arrow)
+        corners = (foot, _shifted_along(base, normal, arrow / 6.0), _shifted_along(base, normal, -arrow / 6.0))
         parts.append(Wedge(DIMENSIONS, corners))
     if fits:
         parts.append(Line(DIMENSIONS, *feet))
-        middle = _shifted(feet[0], direction, 0.5 * length)
+        middle = _shifted_along(feet[0], direction, 0.5 * length)
     else:
         parts.append(
             Line(
-                DIMENSIONS, _shifted(feet[0], direction, -2.0 * arrow), _shifted(feet[1], direction, 2.4 * arrow + wide)
+                DIMENSIONS,
+                _shifted_along(feet[0], direction, -2.0 * arrow),
+                _shifted_along(feet[1], direction, 2.4 * arrow + wide),
             )
         )
-        middle = _shifted(feet[1], direction, 2.2 * arrow + 0.5 * wide)
-    parts.append(Label(DIMENSIONS, text, _shifted(middle, normal, 0.4 * height), height, angle, "middle"))
+        middle = _shifted_along(feet[1], direction, 2.2 * arrow + 0.5 * wide)
+    parts.append(Label(DIMENSIONS, text, _shifted_along(middle, normal, 0.4 * height), height, angle, "middle"))
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
@@ -84,10 +86,10 @@ def aligned_dimension(name: str, start: Point, end: Point, away: float, look: Le
     through = (start[0] - away * y / length, start[1] + away * x / length)
     angle = math.degrees(math.atan2(y, x))
     angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # keeps texts upright
-    return dimension(name, start, end, through, angle, look=look, tolerance=tolerance)
+    return dimension_along_angle(name, start, end, through, angle, look=look, tolerance=tolerance)
 
 
-def _shifted(point: Point, unit: Point, length: float) -> Point:
+def _shifted_along(point: Point, unit: Point, length: float) -> Point:
     return point[0] + length * unit[0], point[1] + length * unit[1]
 
 

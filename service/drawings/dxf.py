@@ -9,7 +9,7 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 from ...model.optional_packages import NamingExtra
-from ..designs.length_with_tolerance import decimals_of
+from ..designs.length_with_tolerance import decimals_of_tolerance
 from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 
 if TYPE_CHECKING:
@@ -140,6 +140,6 @@ def _tolerance_settings(shape: Dimension) -> dict[str, Any]:
     """Return the settings with which CAD writes a tolerance as it is written here."""
     if not shape.tolerance:
         return {}
-    decimals = decimals_of(shape.tolerance)
+    decimals = decimals_of_tolerance(shape.tolerance)
     equal = {"dimtol": 1, "dimtp": shape.tolerance, "dimtm": shape.tolerance, "dimtfac": 1.0}
     return equal | {"dimdec": decimals, "dimtdec": decimals, "dimzin": 0}

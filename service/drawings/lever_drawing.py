@@ -40,9 +40,9 @@ def lever_drawing(
     size = max(extent[2] - extent[0], extent[3] - extent[1])
     tolerances = tolerances_of(mechanism, linkage)
     letters = Lettering(TEXT * size, system)
-    shapes = [*lever_shapes(machine, placed, angle), *_dimensions(machine, angle, letters, tolerances)]
+    shapes = [*lever_shapes(machine, placed, angle), *_skeleton_and_dimensions(machine, angle, letters, tolerances)]
     title = f"{name}, {design}" if design else name
-    return with_title(on.SWING_LAYERS, shapes, extent, size, title, _notes(machine, placed, angle, system))
+    return with_title(on.SWING_LAYERS, shapes, extent, size, title, _drawing_notes(machine, placed, angle, system))
 
 
 def _angle_in_swing(swing: LeverSwing, angle: float | None) -> float:
@@ -61,11 +61,13 @@ def _angle_in_swing(swing: LeverSwing, angle: float | None) -> float:
     )
 
 
-def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, tolerances: dict[str, float]) -> list[Shape]:
+def _skeleton_and_dimensions(
+    machine: LeverMachine, angle: float, letters: Lettering, tolerances: dict[str, float]
+) -> list[Shape]:
     """Return the skeleton, and the dimensions of lever and frame on either side of the angle between them."""
     sizes = machine.sizes
-    pin = _polar(1e3 * sizes.crank, angle + sizes.pin_angle)
-    pivot = _polar(1e3 * sizes.frame, sizes.frame_angle)
+    pin = _point_at_angle(1e3 * sizes.crank, angle + sizes.pin_angle)
+    pivot = _point_at_angle(1e3 * sizes.frame, sizes.frame_angle)
     side = 1.0 if math.sin(float(sizes.angle_from_frame_to_crank(angle))) > 0.0 else -1.0
     away, origin = 4.0 * letters.height, (0.0, 0.0)
     return [
@@ -76,7 +78,7 @@ def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, toleran
     ]
 
 
-def _notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: System) -> tuple[str, ...]:
+def _drawing_notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: System) -> tuple[str, ...]:
     sizes, (unit, factor) = machine.sizes, metric_unit_in("mm", system)
     crank, frame, offset = (f"{1e3 * factor * size:.7g} {unit}" for size in (sizes.crank, sizes.frame, sizes.offset))
     if swing.of_full_turn:
@@ -97,5 +99,5 @@ def _notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: Syste
     )
 
 
-def _polar(length: float, angle: float) -> Point:
+def _point_at_angle(length: float, angle: float) -> Point:
     return length * math.cos(angle), length * math.sin(angle)

@@ -9,7 +9,7 @@ from ...model.turning_cylinder.lever_state import LeverNumbers
 from ...model.turning_cylinder.levers_of_designs import lever_batch
 from ...optimise.front.front import ParetoFront
 from . import layers as on
-from .linkage_shapes import bar, pivot_bearing
+from .linkage_shapes import pivot_bearing, round_ended_bar
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 Extent = tuple[float, float, float, float]
@@ -26,24 +26,24 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
 
 def fixed_lever_shapes(machine: LeverMachine, swing: LeverSwing) -> list[Shape]:
     """Return bearings, path of the pin, and both ends dashed."""
-    size = _size(machine)
+    size = _longest_link_mm(machine)
     shapes: list[Shape] = []
-    for pivot in (0j, _pivot(machine)):
-        shapes += pivot_bearing(_point(pivot), 0.05 * size, is_below=True)
+    for pivot in (0j, _cylinder_pivot(machine)):
+        shapes += pivot_bearing(_point_in_mm(pivot), 0.05 * size, is_below=True)
     last_angle = swing.start + 2.0 * math.pi if swing.of_full_turn else swing.end
     first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in (swing.start, last_angle))
     shapes.append(Arc(on.PATHS, (0.0, 0.0), _MM * machine.sizes.crank, first, last))
     for layer, end in ((on.START, swing.start), (on.END, swing.end)):
-        shapes += _links((layer,) * 3, machine, swing, end)
+        shapes += _link_shapes((layer,) * 3, machine, swing, end)
     return shapes
 
 
 def moving_lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
     """Return the lever with its cylinder at an angle, rad."""
-    shapes = _links((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
-    pins = (0j, _pivot(machine), machine.sizes.crank * np.exp(1j * (angle + machine.sizes.pin_angle)))
-    circles = (Circle(on.PINS, _point(pin), _PIN * _size(machine)) for pin in pins)
-    return [*shapes, *_body(machine, complex(np.exp(1j * angle))), *circles]
+    shapes = _link_shapes((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
+    pins = (0j, _cylinder_pivot(machine), machine.sizes.crank * np.exp(1j * (angle + machine.sizes.pin_angle)))
+    circles = (Circle(on.PINS, _point_in_mm(pin), _PIN * _longest_link_mm(machine)) for pin in pins)
+    return [*shapes, *_mass_centre_mark(machine, complex(np.exp(1j * angle))), *circles]
 
 
 def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shape]]:
@@ -52,31 +52,33 @@ def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shap
     The piston rod is drawn behind its pin, and barrel and arm in front of the cylinder's pivot, like the rod and slider
     of a linkage.
     """
-    size, barrel = _size(machine), barrel_length(machine, swing)
+    size, barrel = _longest_link_mm(machine), barrel_length(machine, swing)
     foot, pin = 1j * machine.sizes.offset, machine.sizes.crank * complex(np.exp(1j * machine.sizes.pin_angle))
     lengths = [float(machine.sizes.cylinder_length(end)) for end in (swing.start, swing.end)]
     longest = machine.sizes.closable_length_range[1] if swing.of_full_turn else max(lengths)
     end = max(longest, machine.ram) / _NECK if swing.of_full_turn else barrel
     circle: list[Shape] = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
-    rod: Shape = circle[0] if swing.of_full_turn else _strip(on.ROD, complex(barrel - longest), 0j, _ROD * size)
-    lug = [Line(on.ACTUATOR, (0.0, 0.0), _point(foot))] if foot else []
-    lever = bar(on.CRANK, (0.0, 0.0), _point(pin), _LEVER * size)
+    rod: Shape = (
+        circle[0] if swing.of_full_turn else _strip_around_line(on.ROD, complex(barrel - longest), 0j, _ROD * size)
+    )
+    lug = [Line(on.ACTUATOR, (0.0, 0.0), _point_in_mm(foot))] if foot else []
+    lever = round_ended_bar(on.CRANK, (0.0, 0.0), _point_in_mm(pin), _LEVER * size)
     return {
         "rod": [rod],
-        "slider": [_strip(on.ACTUATOR, foot, foot + end, _BARREL * size), *lug],
-        "crank": [lever, *_body(machine, 1.0 + 0j)],
+        "slider": [_strip_around_line(on.ACTUATOR, foot, foot + end, _BARREL * size), *lug],
+        "crank": [lever, *_mass_centre_mark(machine, 1.0 + 0j)],
         **dict.fromkeys(("pivot", "crank-pin", "slider-pin"), circle),
     }
 
 
-def _body(machine: LeverMachine, direction: complex) -> list[Shape]:
+def _mass_centre_mark(machine: LeverMachine, direction: complex) -> list[Shape]:
     """Return the mark of the mass centre of a lever in a direction, a unit vector; none without mass."""
     if not machine.lever.mass:
         return []
-    size, centre = _size(machine), centre_of_lever(machine) * direction
+    size, centre = _longest_link_mm(machine), centre_of_lever(machine) * direction
     ends = (centre - 0.04 * size * way / _MM for way in (1.0, -1.0, 1j, -1j))
-    left, right, low, high = (_point(end) for end in ends)
-    return [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point(centre), 0.025 * size)]
+    left, right, low, high = (_point_in_mm(end) for end in ends)
+    return [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point_in_mm(centre), 0.025 * size)]
 
 
 def lever_extent(machine: LeverMachine, swing: LeverSwing) -> Extent:
@@ -121,24 +123,26 @@ def extent_of_levers(c: LeverNumbers, *, of_full_turn: bool = False) -> Extent:
     return left, bottom, right, top
 
 
-def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
+def _link_shapes(
+    layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: LeverSwing, angle: float
+) -> list[Shape]:
     """Return barrel, piston rod and lever at an angle."""
-    sizes, size = machine.sizes, _size(machine)
+    sizes, size = machine.sizes, _longest_link_mm(machine)
     motion = sizes.motion_at(np.array([angle]))
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
-    lug = [Line(layers[0], _point(_pivot(machine)), _point(foot))] if sizes.offset else []
+    lug = [Line(layers[0], _point_in_mm(_cylinder_pivot(machine)), _point_in_mm(foot))] if sizes.offset else []
     if swing.of_full_turn:  # a slotted arm, whose slot the pin never leaves
         end = foot + max(sizes.closable_length_range[1], machine.ram) / _NECK * line
-        slotted = _strip(layers[0], foot, end, _BARREL * size)
-        lever = bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)
+        slotted = _strip_around_line(layers[0], foot, end, _BARREL * size)
+        lever = round_ended_bar(layers[2], (0.0, 0.0), _point_in_mm(pin), _LEVER * size)
         return [slotted, *lug, lever, *_ram(layers[0], machine, line)]
     neck = foot + barrel_length(machine, swing) * line
     return [
         *lug,
-        _strip(layers[1], neck, pin, _ROD * size),
-        _strip(layers[0], foot, neck, _BARREL * size),
-        bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size),
+        _strip_around_line(layers[1], neck, pin, _ROD * size),
+        _strip_around_line(layers[0], foot, neck, _BARREL * size),
+        round_ended_bar(layers[2], (0.0, 0.0), _point_in_mm(pin), _LEVER * size),
     ]
 
 
@@ -146,12 +150,12 @@ def _ram(layer: Layer, machine: LeverMachine, line: complex) -> list[Shape]:
     """Return the ram, which moves at right angles to the frame, and its pin on the line of the arm."""
     if not machine.ram:
         return []
-    pivot, size = _pivot(machine), _size(machine)
+    pivot, size = _cylinder_pivot(machine), _longest_link_mm(machine)
     along = pivot / abs(pivot)
     pin, place = pivot + machine.ram * line, pivot + machine.ram * along * (1j * (line / along).imag - 1.0)
     half = 1j * along * _HALF_RAM * size / _MM
-    slot, circle = Line(layer, _point(pin), _point(place)), Circle(layer, _point(pin), _PIN * size)
-    return [_strip(layer, place - half, place + half, _BARREL * size), slot, circle]
+    slot, circle = Line(layer, _point_in_mm(pin), _point_in_mm(place)), Circle(layer, _point_in_mm(pin), _PIN * size)
+    return [_strip_around_line(layer, place - half, place + half, _BARREL * size), slot, circle]
 
 
 def usual_angle(swing: LeverSwing) -> float:
@@ -166,18 +170,18 @@ def barrel_length(machine: LeverMachine, swing: LeverSwing) -> float:
     return _NECK * min(float(machine.sizes.cylinder_length(end)) for end in (swing.start, swing.end))
 
 
-def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
+def _strip_around_line(layer: Layer, start: complex, end: complex, width: float) -> Outline:
     """Return a rectangle around a line between two points, m. width: mm."""
     across = 0.5j * width * (end - start) / abs(end - start) / _MM
     corners = (start - across, end - across, end + across, start + across)
-    return Outline(layer, tuple(_point(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))
+    return Outline(layer, tuple(_point_in_mm(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))
 
 
-def _size(machine: LeverMachine) -> float:
+def _longest_link_mm(machine: LeverMachine) -> float:
     return _MM * max(machine.sizes.crank, machine.sizes.frame)
 
 
-def _pivot(machine: LeverMachine) -> complex:
+def _cylinder_pivot(machine: LeverMachine) -> complex:
     return machine.sizes.frame * complex(math.cos(machine.sizes.frame_angle), math.sin(machine.sizes.frame_angle))
 
 
@@ -187,5 +191,5 @@ def centre_of_lever(machine: LeverMachine) -> complex:
     return complex(lever.moment_along, lever.moment_across) / lever.mass
 
 
-def _point(place: complex) -> Point:
+def _point_in_mm(place: complex) -> Point:
     return _MM * place.real, _MM * place.imag

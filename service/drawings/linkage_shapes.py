@@ -56,7 +56,7 @@ class LinkageSizes:
     barrels: tuple[Barrel, ...] = ()
 
     @property
-    def size(self) -> float:
+    def longer_side(self) -> float:
         """Longer side of the extent."""
         left, low, right, high = self.extent
         return max(right - left, high - low)
@@ -72,10 +72,10 @@ def linkage_sizes(mechanism: Mechanism, linkage: Linkage) -> LinkageSizes:
     look = linkage_sizes_between(
         mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r)
     )
-    return _with_cylinders(mechanism, look)
+    return _with_slider_as_piston(mechanism, look)
 
 
-def _with_cylinders(mechanism: Mechanism, look: LinkageSizes) -> LinkageSizes:
+def _with_slider_as_piston(mechanism: Mechanism, look: LinkageSizes) -> LinkageSizes:
     """Return a linkage with its slider drawn as the piston of a machine's cylinders.
 
     Bore and clearance are true to scale; the piston length is schematic.
@@ -192,7 +192,7 @@ def fixed_shapes(linkage: Linkage, look: LinkageSizes, *, bearing_below: bool) -
         *paths,
         *ghosts,
         *guide_rails(look),
-        *crank_bearing(look, is_below=bearing_below),
+        *crank_bearing(look, is_below_pivot=bearing_below),
         *walls,
     ]
 
@@ -207,11 +207,11 @@ def _barrel_shapes(barrel: Barrel, offset: float) -> list[Shape]:
 def centre_lines(look: LinkageSizes) -> list[Shape]:
     """Return the slider line, and its parallel through the crank pivot."""
     left, _, right, _ = look.extent
-    ends = (left - 0.03 * look.size, right + 0.03 * look.size)
+    ends = (left - 0.03 * look.longer_side, right + 0.03 * look.longer_side)
     return [Line(on.AXES, (ends[0], y), (ends[1], y)) for y in dict.fromkeys((0.0, look.offset))]
 
 
-def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
+def round_ended_bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     """Return a round-ended outline around two pivots."""
     length = math.dist(start, end)
     x, y = (0.5 * width * (end[0] - start[0]) / length, 0.5 * width * (end[1] - start[1]) / length)
@@ -235,8 +235,8 @@ def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, l
     """Return slider, rod and crank, each on its layer."""
     return [
         slider_block(layers[0], slider, look),
-        bar(layers[1], pin, slider, look.rod_width),
-        bar(layers[2], (0.0, 0.0), pin, look.crank_width),
+        round_ended_bar(layers[1], pin, slider, look.rod_width),
+        round_ended_bar(layers[2], (0.0, 0.0), pin, look.crank_width),
     ]
 
 
@@ -255,9 +255,9 @@ def guide_rails(look: LinkageSizes) -> list[Shape]:
     return shapes
 
 
-def crank_bearing(look: LinkageSizes, *, is_below: bool) -> list[Shape]:
-    """Return the bearing of the crank pivot. is_below: whether the bearing stands below the pivot."""
-    return pivot_bearing((0.0, 0.0), 1.5 * max(look.pins[0], 0.3 * look.crank_width), is_below=is_below)
+def crank_bearing(look: LinkageSizes, *, is_below_pivot: bool) -> list[Shape]:
+    """Return the bearing of the crank pivot. is_below_pivot: whether the bearing stands below the pivot."""
+    return pivot_bearing((0.0, 0.0), 1.5 * max(look.pins[0], 0.3 * look.crank_width), is_below=is_below_pivot)
 
 
 def pivot_bearing(pivot: Point, foot: float, *, is_below: bool) -> list[Shape]:

@@ -63,7 +63,7 @@ class SwingSizes:
         return left, low, right, high
 
     @property
-    def bearing_below(self) -> bool:
+    def is_bearing_below(self) -> bool:
         """Whether the bearing stands below the pivot: away from the crank at mid-swing."""
         return math.sin(0.5 * (self.swing.start + self.swing.end)) >= 0.0
 
@@ -72,13 +72,15 @@ def swing_sizes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSi
     """Return the drawn sizes of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
     swing = swing_between_crank_angles(mechanism, checked, swing)
-    turning = [dead_angle for dead in dead_point_angles(checked) for dead_angle in swing.angles_within(dead)]
+    turning = [
+        dead_angle for dead in dead_point_angles(checked) for dead_angle in swing.equal_angles_within_swing(dead)
+    ]
     ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
     slider_range = (min(ways), max(ways))
     body = _body_centre(mechanism, checked)
     swept = _swept_box(checked, swing, body)
     look = linkage_sizes_between(mechanism, checked, (ways[0], ways[1]), slider_range, swept)
-    cylinder = _fitting_cylinder(look) if swing.driver == "slider" else None
+    cylinder = _cylinder_beyond_slider(look) if swing.driver == "slider" else None
     return SwingSizes(checked, swing, look, cylinder, body)
 
 
@@ -99,7 +101,7 @@ def _swept_box(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[floa
     """Return the box around the paths of the crank and its body, mm."""
     r = _MM * float(linkage.crank)
     angles = np.linspace(swing.start, swing.end, 181)
-    quarters = [angle for k in range(4) for angle in swing.angles_within(0.5 * math.pi * k)]
+    quarters = [angle for k in range(4) for angle in swing.equal_angles_within_swing(0.5 * math.pi * k)]
     angles = np.concatenate([angles, quarters])
     x, y = [np.zeros(1), r * np.cos(angles)], [np.zeros(1), r * np.sin(angles)]
     if body is not None:
@@ -112,7 +114,7 @@ def _swept_box(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[floa
     return float(every[0].min()), float(every[1].min()), float(every[0].max()), float(every[1].max())
 
 
-def _fitting_cylinder(look: LinkageSizes) -> Cylinder:
+def _cylinder_beyond_slider(look: LinkageSizes) -> Cylinder:
     """Return a cylinder of the required length, on the far side of the slider."""
     side = 1.0 if sum(look.slider_range) >= 0.0 else -1.0
     far = side * look.slider_range[1 if side > 0.0 else 0]
@@ -142,7 +144,7 @@ def fixed_swing_shapes(drawn: SwingSizes) -> list[Shape]:
         *ways,
         *ghosts,
         *guide_rails(look),
-        *crank_bearing(look, is_below=drawn.bearing_below),
+        *crank_bearing(look, is_below_pivot=drawn.is_bearing_below),
         *barrel,
     ]
 
@@ -175,7 +177,7 @@ def body_shapes(body: Point, look: LinkageSizes, angle: float) -> list[Shape]:
 
 def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: LinkageSizes) -> Outline:
     """Return the rod of the cylinder, from the slider to the barrel."""
-    return rectangle(
+    return rectangle_around_horizontal_line(
         layer,
         (slider[0] + cylinder.side * 0.75 * look.block, slider[1]),
         (cylinder.near_end, slider[1]),
@@ -186,13 +188,15 @@ def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: LinkageSi
 def piston_rod_and_barrel(cylinder: Cylinder, look: LinkageSizes) -> tuple[Outline, Outline]:
     """Return the cylinder's complete rod relative to the slider pin, and its barrel."""
     near = look.slider_range[0] if cylinder.side > 0.0 else look.slider_range[1]
-    rod = rectangle(
+    rod = rectangle_around_horizontal_line(
         on.ACTUATOR, (cylinder.side * 0.75 * look.block, 0.0), (cylinder.near_end - near, 0.0), 0.3 * cylinder.width
     )
-    return rod, rectangle(on.ACTUATOR, (cylinder.near_end, look.offset), (cylinder.foot, look.offset), cylinder.width)
+    return rod, rectangle_around_horizontal_line(
+        on.ACTUATOR, (cylinder.near_end, look.offset), (cylinder.foot, look.offset), cylinder.width
+    )
 
 
-def rectangle(layer: Layer, start: Point, end: Point, width: float) -> Outline:
+def rectangle_around_horizontal_line(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     """Return a rectangle around a horizontal line."""
     half = 0.5 * width
     corners = (
@@ -216,4 +220,8 @@ def _barrel(cylinder: Cylinder, look: LinkageSizes) -> list[Shape]:
         for k in (-0.6, -0.2, 0.2, 0.6, 1.0)
     ]
     wall = Line(on.FRAME, (cylinder.foot, y - half), (cylinder.foot, y + half))
-    return [rectangle(on.ACTUATOR, (cylinder.near_end, y), (cylinder.foot, y), cylinder.width), wall, *hatch]
+    return [
+        rectangle_around_horizontal_line(on.ACTUATOR, (cylinder.near_end, y), (cylinder.foot, y), cylinder.width),
+        wall,
+        *hatch,
+    ]

@@ -100,7 +100,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
         best = np.max if item.sense == "maximise" else np.min
         unit = unit_text(item.unit)
         before, after = float(best(comparison.nominal[:, column])), float(best(comparison.robust[:, column]))
-        cost = comparison.cost(column, maximised=item.sense == "maximise")
+        cost = comparison.cost_of_robustness(column, maximised=item.sense == "maximise")
         title = item.title.removesuffix(", worst case")
         change = f"{before:.5g} → {after:.5g} {unit}".rstrip()
         notes.append(f"   {title}: {change}, cost {cost:.2g} {unit}".rstrip())

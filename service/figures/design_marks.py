@@ -70,7 +70,7 @@ class Axis:
     better: int
 
     @property
-    def varies(self) -> bool:
+    def values_vary(self) -> bool:
         """Whether its values differ between designs by more than rounding."""
         return not is_constant(self.values)
 
@@ -80,7 +80,7 @@ def marked_designs(front: ParetoFront) -> list[Mark]:
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
         quantity = front.problem.quantity(name)
-        file = name if name.isidentifier() else quantity.stem
+        file = name if name.isidentifier() else quantity.column_stem
         labels.setdefault(row, []).append((f"best_{file}", f"best {quantity.short_title}"))
     if len(front.objectives) > 1:
         labels.setdefault(front.knee(), []).append(("knee", "knee"))

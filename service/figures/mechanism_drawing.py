@@ -13,7 +13,7 @@ from ...objectives.kinds import System, metric_unit_in
 from ..drawings.linkage_shapes import LinkageSizes, fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Point
 from ..render.numerals import format_length, format_number
-from .shape_painting import paint_shapes, show_rectangle
+from .shape_painting import paint_shapes, set_axes_to_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
 
@@ -23,7 +23,7 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     The dead centres are outlined in grey. Links with a section have their true width.
     """
     look = linkage_sizes(mechanism, linkage)
-    (left, low, right, high), size = look.extent, look.size
+    (left, low, right, high), size = look.extent, look.longer_side
     pin, slider = pin_positions(linkage, least_transmission_crank_angle(linkage))
     paint_shapes(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
     _draw_rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
@@ -31,7 +31,7 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     _draw_stroke_dimension(axes, look, size, system)
     _draw_offset_dimension(axes, left, look.offset, size, system)
     draw_scale_bar(axes, left, low - 0.13 * size, size, system)
-    show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
+    set_axes_to_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
 
 def least_transmission_crank_angle(linkage: Linkage) -> float:

@@ -106,7 +106,7 @@ def panel_in_units(panel: Panel, system: System) -> Panel:
     )
 
 
-def sampled_turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
+def sampled_crank_angles(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
     """Return crank angles, rad, over one revolution or two; pairs of angles at each mark keep jumps vertical.
 
     samples: number of samples per revolution. Marks within one revolution apply to every revolution.

@@ -88,14 +88,14 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
 
 def _axis_ends(axis: Axis) -> tuple[float, float]:
     """Return the values at the lower and the upper end; for objectives the better end is up."""
-    low, high = padded_limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
+    low, high = padded_limits(axis.values.min(), axis.values.max(), 0.0 if axis.values_vary else 0.5)
     return (high, low) if axis.better < 0 else (low, high)
 
 
 def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
     panel.plot([position, position], [0, 1], color=FRAME, linewidth=1.2, zorder=2, clip_on=False)
     low, high = _axis_ends(axis)
-    if axis.varies:
+    if axis.values_vary:
         locator = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
         ticks = np.asarray(locator.tick_values(min(low, high), max(low, high)))
     else:
@@ -107,16 +107,16 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         panel.plot([position - 0.03, position], [at, at], color=FRAME, linewidth=1.0, zorder=2, clip_on=False)
         panel.text(
             position - 0.05,
-            at if axis.varies else at + 0.012,  # all lines meet if there is only one value
-            format_on_scale(tick, low, high, digits=6 if axis.varies else 4),
+            at if axis.values_vary else at + 0.012,  # all lines meet if there is only one value
+            format_on_scale(tick, low, high, digits=6 if axis.values_vary else 4),
             ha="right",
-            va="center" if axis.varies else "bottom",
+            va="center" if axis.values_vary else "bottom",
             fontsize=SMALL,
             color=INK,
             zorder=4,
             bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6},
         )
-    if axis.varies:
+    if axis.values_vary:
         ends: dict[str, Any] = {"ha": "center", "fontsize": SMALL, "color": MUTED}
         panel.text(position, -0.025, format_on_scale(low, low, high), va="top", **ends)
         panel.text(position, 1.025, format_on_scale(high, low, high), va="bottom", **ends)

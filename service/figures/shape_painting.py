@@ -54,7 +54,7 @@ def drawing_figure(drawing: Drawing) -> Figure:
     scale = min(_WIDTH / width, _TALLEST / height) * _FILLS  # inches a mm
     figure = new_figure(scale * width, scale * height)
     axes = add_axes(figure, 0.0, 0.0, scale * width, scale * height)
-    show_rectangle(axes, left, bottom, right, top, share=_FILLS)
+    set_axes_to_rectangle(axes, left, bottom, right, top, share=_FILLS)
     dimensions = [shape for shape in drawing.shapes if isinstance(shape, Dimension)]
     for shapes in (drawing.shapes, *(shape.parts for shape in dimensions)):
         paint_shapes(axes, shapes)
@@ -75,7 +75,9 @@ def drawing_figure(drawing: Drawing) -> Figure:
     return figure
 
 
-def show_rectangle(axes: Axes, left: float, low: float, right: float, high: float, *, share: float = 1.0) -> None:
+def set_axes_to_rectangle(
+    axes: Axes, left: float, low: float, right: float, high: float, *, share: float = 1.0
+) -> None:
     """Show a rectangle in the middle of hidden axes, at the same scale in both directions.
 
     share: fraction of width or height that it fills.

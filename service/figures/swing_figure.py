@@ -27,7 +27,7 @@ from ..render.blocks import Value, dimensions_text, joined, words
 from .mechanism_drawing import draw_scale_bar
 from .panel_drawing import draw_panel_figure
 from .panel_figure import CRANK_ANGLE, DASHED, Line, Panel, PanelFigure
-from .shape_painting import paint_shapes, show_rectangle
+from .shape_painting import paint_shapes, set_axes_to_rectangle
 from .style import add_axes
 
 _TALLEST = 3.2  # inches, for the drawing
@@ -71,7 +71,7 @@ def figure_below_machine(
     axes = add_axes(figure, _ASIDE, foot, wide, tall)
     paint_shapes(axes, shapes)
     draw_scale_bar(axes, left, low + 0.03 * size, size, system)
-    show_rectangle(axes, left, low, right, high)
+    set_axes_to_rectangle(axes, left, low, right, high)
     return figure
 
 

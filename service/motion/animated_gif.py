@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.cycle.gas_work import cylinder_loads, indicator_diagram
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
@@ -22,7 +22,7 @@ from ..drawings.lever_parts import fixed_lever_shapes, lever_extent, moving_leve
 from ..drawings.linkage_shapes import fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
-from ..figures.shape_painting import paint_shapes, show_rectangle
+from ..figures.shape_painting import paint_shapes, set_axes_to_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, add_axes, new_figure, write_text
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scen
         reading = f"crank angle {degrees}°, slider at {_length_text(slider[0], system)}"
         frames.append((moving_shapes(pin, slider, look), f"{reading}, {pressures} {bar}" if gas else reading))
     return _Scene(
-        look.extent, look.size, fixed_shapes(linkage, look, bearing_below=True), frames, "dead centres dashed"
+        look.extent, look.longer_side, fixed_shapes(linkage, look, bearing_below=True), frames, "dead centres dashed"
     )
 
 
@@ -102,7 +102,7 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: S
         slider = pin_positions(drawn.linkage, angle)[1]
         reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length_text(slider[0], system)}"
         frames.append((moving_swing_shapes(drawn, angle), reading))
-    return _Scene(drawn.extent, drawn.look.size, fixed_swing_shapes(drawn), frames, "ends of the swing dashed")
+    return _Scene(drawn.extent, drawn.look.longer_side, fixed_swing_shapes(drawn), frames, "ends of the swing dashed")
 
 
 def _lever_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System) -> _Scene:
@@ -136,7 +136,7 @@ def _draw_frames(scene: _Scene, title: str) -> list[Picture]:
     figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
     figure.set_dpi(_DOTS)
     axes = add_axes(figure, 0.0, _FOOT, _WIDTH, height)
-    show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
+    set_axes_to_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     write_text(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
     write_text(figure, 0.15, 0.12, scene.dashed, fontsize=SMALL, color=MUTED)
     paint_shapes(axes, scene.still)

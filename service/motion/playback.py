@@ -11,7 +11,7 @@ from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.cycle.gas_work import cylinder_loads, indicator_diagram
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
@@ -22,7 +22,14 @@ from ..designs.design_curves import CurveColumn, cycle_table, lever_design_curve
 from ..designs.length_with_tolerance import tolerances_of
 from ..drawings import layers as on
 from ..drawings.lever_parts import fixed_lever_shapes, lever_extent, lever_parts
-from ..drawings.linkage_shapes import LinkageSizes, bar, fixed_shapes, lengths_in_words, linkage_sizes, slider_block
+from ..drawings.linkage_shapes import (
+    LinkageSizes,
+    fixed_shapes,
+    lengths_in_words,
+    linkage_sizes,
+    round_ended_bar,
+    slider_block,
+)
 from ..drawings.shapes import Circle, Shape
 from ..drawings.swing_parts import body_shapes, fixed_swing_shapes, piston_rod_and_barrel, swing_sizes
 
@@ -131,7 +138,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
         still=fixed_shapes(linkage, look, bearing_below=True),
         moving=moving_link_shapes(look),
         extent=look.extent,
-        size=look.size,
+        size=look.longer_side,
         ends={
             key: (factor * curve.least.value, factor * curve.greatest.value)
             for key, factor, curve in factors
@@ -179,8 +186,8 @@ def moving_link_shapes(look: LinkageSizes) -> dict[str, list[Shape]]:
     pin = (0.0, 0.0)
     return {
         "slider": [slider_block(on.SLIDER, pin, look)],
-        "rod": [bar(on.ROD, pin, (look.rod, 0.0), look.rod_width)],
-        "crank": [bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
+        "rod": [round_ended_bar(on.ROD, pin, (look.rod, 0.0), look.rod_width)],
+        "crank": [round_ended_bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
         **{
             name: [Circle(on.PINS, pin, radius)]
             for name, radius in zip(("pivot", "crank-pin", "slider-pin"), look.pins, strict=True)
@@ -229,7 +236,7 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
         still=fixed_swing_shapes(drawn),
         moving={**pushed, **moving},
         extent=drawn.extent,
-        size=drawn.look.size,
+        size=drawn.look.longer_side,
         words=_SWING,
     )
 

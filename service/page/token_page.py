@@ -27,7 +27,7 @@ document.forms[0].addEventListener("submit", ({ target }) => { target.action = `
 _WRONG = '<p class="error" role="alert">That was not the token of this service.</p>'
 
 
-def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLResponse:
+def token_request_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLResponse:
     """Return the page that asks for the token, with status 401. wrong: whether a wrong token was entered.
 
     The page's address is that of the connection, whose Host is a name of the service.

@@ -14,7 +14,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.end_angles import swing_ends
-from ...model.swing.swing import STARTS, Swing, with_start_of_machine
+from ...model.swing.swing import STARTS, Swing, with_start_set_by_machine
 from ...model.turning_cylinder.lever_of_design import lever_sizes
 from ...model.turning_cylinder.levers_of_designs import can_make_motion
 from ...objectives.lever_geometry import CYLINDER_TRAVEL
@@ -85,7 +85,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     )
     light = Problem(
         name="preview",
-        mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open", start=part.start, varying=free),
+        mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open", start=part.start_ranges, varying=free),
         crank=ranges["crank"],
         rod=ranges["rod"],
         offset=ranges["offset"],
@@ -148,7 +148,7 @@ def _possible_lever(problem: Problem) -> PossibleSwing | None:
     travel = light.quantity(CYLINDER_TRAVEL.name).evaluate(light.mechanism, basis).values if len(basis) else basis
     example = example_design(sample.designs, sample.violation, box[passing])
     machine = None if example is None else light.mechanism.with_values(example[3:].tolist())
-    placed = None if machine is None else with_start_of_machine(machine, swing)
+    placed = None if machine is None else with_start_set_by_machine(machine, swing)
     return PossibleSwing(
         swing=swing,
         example_swing=placed,

@@ -160,8 +160,10 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
 
 def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
     """Return the minimum and maximum on a branch, sampled ever more densely around the best samples."""
-    points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_points_at_limit(problem, branch)])
-    values = _closed_form_values(problem, name, branch.dimensions(points)[:, :3])
+    points = np.concatenate(
+        [first_samples(SAMPLES, len(branch.free), 1, index), *_points_at_limits_of_requirements(problem, branch)]
+    )
+    values = _closed_form_values(problem, name, branch.designs_at_points(points)[:, :3])
     if not np.isfinite(values).any():
         return None
     random = random_generator(1, 100 + index)
@@ -175,7 +177,7 @@ def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, inde
             step = width * random.standard_normal(children.shape)
             stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges; moves follow these
             children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
-            child_values = _closed_form_values(problem, name, branch.dimensions(children)[:, :3])
+            child_values = _closed_form_values(problem, name, branch.designs_at_points(children)[:, :3])
             best = np.concatenate([best[rows], children])
             merits = np.concatenate([merits[rows], np.where(np.isfinite(child_values), sign * child_values, -np.inf)])
         start = best[np.argsort(-merits, kind="stable")[:_POLISHED]]
@@ -198,7 +200,7 @@ def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, si
     return float(-polished.values[good, 0].min()) if good.any() else -np.inf
 
 
-def _points_at_limit(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
+def _points_at_limits_of_requirements(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
     """Yield points of a branch (n, k) at the limit of a requirement.
 
     Extremes lie there, and the feasible bands are thin.
@@ -210,7 +212,9 @@ def _points_at_limit(problem: Problem, branch: EliminationBranch) -> Iterator[Ar
             edge = replace(constraint, lower=end, upper=end)
             rest = (*problem.constraints[:place], edge, *problem.constraints[place + 1 :])
             for branch_on_edge in elimination_branches(replace(problem, constraints=rest)):
-                designs = branch_on_edge.dimensions(first_samples(_ON_EDGE, len(branch_on_edge.free), 1, place))[:, :3]
+                designs = branch_on_edge.designs_at_points(first_samples(_ON_EDGE, len(branch_on_edge.free), 1, place))[
+                    :, :3
+                ]
                 designs = designs[_rotates_fully(designs) & _is_within_ranges(problem, designs)]
                 if branch_on_edge.sign == branch.sign and len(designs):
                     columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in branch.free]

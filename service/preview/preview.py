@@ -146,7 +146,7 @@ def _implausible_lengths(tables: Mapping[str, Any]) -> list[str]:
     """Return the warnings about crank, rod and offset values without a unit that are implausible."""
     keys = {f"variables.{name}" for name in DIMENSIONS}
     plain = numbers_without_unit(Job, {"variables": tables["variables"]})
-    return [item.warning for item in plain if item.key in keys and item.warning]
+    return [item.warning_text for item in plain if item.key in keys and item.warning_text]
 
 
 def _mistakes_in(error: InputError) -> list[Wrong]:
@@ -254,6 +254,6 @@ def _nearest_possible_remarks(problem: Problem, constraint: Constraint, ends: En
 def _change_to_reachable_value(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> Change:
     """Return the change that asks for the reachable value on one side of a requirement."""
     unit = problem.quantity(constraint.quantity).unit
-    bounds = {side: bound * unit.factor for side, bound in constraint.sides} | {word: item.number}
+    bounds = {side: bound * unit.factor for side, bound in constraint.sides} | {word: item.reachable_number}
     value = {side: f"{bound:.10g} {unit.symbol}" if unit.symbol else bound for side, bound in bounds.items()}
     return Change(f"constraints.{constraint.quantity}", value, f"Ask for {item.relation} {item.with_unit}")

@@ -68,7 +68,7 @@ def sampled_designs(problem: Problem) -> tuple[Array, NDArray[np.bool_]]:
     """
     branches = elimination_branches(problem)
     parts = list(_points_of_branches(branches, SAMPLES, 0))
-    designs = [branches[index].dimensions(points)[:, _length_columns(problem)] for index, points, _ in parts]
+    designs = [branches[index].designs_at_points(points)[:, _length_columns(problem)] for index, points, _ in parts]
     return np.concatenate(designs), np.repeat([part[2] for part in parts], [len(points) for points in designs])
 
 
@@ -111,7 +111,9 @@ def screened_samples(problem: Problem) -> Screening:
             if not is_uniform and time.monotonic() > end:
                 continue
             for begin in range(0, len(points), BATCH):
-                screened_designs, values, violation = evaluators[index].screen(points[begin : begin + BATCH])
+                screened_designs, values, violation = evaluators[index].screen_designs_objectives_violation(
+                    points[begin : begin + BATCH]
+                )
                 designs.append(screened_designs[:, columns])
                 objectives.append(values)
                 violations.append(violation)
@@ -134,11 +136,11 @@ def _problems_with_exact_bands(problem: Problem) -> list[Problem]:
     quantity: samples of the whole box would rarely meet a thin band, whereas samples of an exact value always do.
     """
     bands, box = [], Box.from_problem(problem)
-    for constraint in problem.constraints if box.turns else ():
+    for constraint in problem.constraints if box.may_rotate_fully else ():
         quantity = QUANTITIES.get(constraint.quantity)
         if constraint.lower is None or constraint.upper is None or quantity is None or quantity.bounds is None:
             continue
-        least, greatest = box.possible(quantity)
+        least, greatest = box.bounds_on_quantity(quantity)
         lower, upper = max(constraint.lower, least), min(constraint.upper, greatest)
         is_band = lower < upper and upper - lower < _BAND * (greatest - least)
         if is_band and _can_be_eliminated(problem, replace(constraint, lower=lower, upper=lower)):

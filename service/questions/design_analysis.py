@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.display_units import convert_record, convert_row
-from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules, violations_of
+from ..designs.judged_requirements import JudgedChoice, Judgement, judged_rules_of_design, violations_of
 from ..render.terminal import print_blocks
 from ..runs.result import Row, rows_of_columns
 from ..text.tables import show_design, show_rules, show_undefined, show_violated
@@ -79,9 +79,9 @@ def judge_design(
         machine, quantities = replace(part.mechanism.nominal, speed=mechanism.speed), row
         if machine != mechanism:
             quantities, _ = quantities_of_design(machine, linkage, part.own)
-        missed = tuple(rule for rule in judge_rules(part, quantities, system) if not rule.met)
+        missed = tuple(rule for rule in judged_rules_of_design(part, quantities, system) if not rule.met)
         choices.append(JudgedChoice(labels=variant.labels, missed=missed))
-    return Judgement(rules=judge_rules(problem, row, system), choices=choices)
+    return Judgement(rules=judged_rules_of_design(problem, row, system), choices=choices)
 
 
 def quantities_of_design(

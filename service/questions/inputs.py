@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, get_args, get_origin
 
-from ...model.errors import InputError, reading_in_both_units, warn_user
+from ...model.errors import InputError, number_in_si_and_usual_unit, warn_user
 from ...objectives.kinds import DisplayUnit, Kind
 from ...objectives.units import Sign, quote
 
@@ -84,7 +84,7 @@ class Input:
         kind = replace(self.kind, example=self.usual or self.example or self.kind.example)
         value = parse_value(word, raw, kind, sign=self.sign)
         if not isinstance(raw, str) and kind.believed is not None and abs(value) > kind.believed[1]:
-            doubt = reading_in_both_units(f"{word} =", value, kind.unit, self.unit.symbol, self.unit.factor)
+            doubt = number_in_si_and_usual_unit(f"{word} =", value, kind.unit, self.unit.symbol, self.unit.factor)
             warn_user(f"inputs of questions must be in SI: {doubt}", through_callers=True)
         if self.upper_limit is not None and value >= self.upper_limit:
             limit = f"{self.unit.factor * self.upper_limit:g} {self.unit.symbol}".rstrip()

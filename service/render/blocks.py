@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.kinds import LENGTH, RATIO, Kind, kind_of_key
+from ...objectives.kinds import LENGTH, RATIO, Kind, name_and_kind_of_key
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -141,7 +141,7 @@ def value_from_record(record: Mapping[str, Any], key: str, **look: Any) -> Value
 
 def values_from_record(record: Mapping[str, Any], key: str, **look: Any) -> list[Value]:
     """Return a list of numbers from a metric record; see `value_from_record`."""
-    _, kind = kind_of_key(key)
+    _, kind = name_and_kind_of_key(key)
     return [Value(None if number is None else number / kind.metric.factor, kind, **look) for number in record[key]]
 
 
@@ -151,7 +151,7 @@ NamedNumber = tuple[str, Text, Text]
 
 def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> NamedNumber:
     """Return a named number from a metric record, with the crank angle of a peak and a remark."""
-    name, _ = kind_of_key(key)
+    name, _ = name_and_kind_of_key(key)
     angle = f"{name}_angle_deg"
     at = (
         words("at {angle}", angle=value_from_record(record, angle, decimals=2)) if record.get(angle) is not None else ""

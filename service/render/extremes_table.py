@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ...objectives.kinds import ANGLE, LENGTH, kind_of_key
+from ...objectives.kinds import ANGLE, LENGTH, name_and_kind_of_key
 from .blocks import Table, Text, Unit, column, value_from_record
 
 _PLACES = (column("at", ANGLE), column("slider", LENGTH))
@@ -16,7 +16,7 @@ def extremes_table(curves: Mapping[str, Mapping[str, Any]]) -> Table:
         (entry["title"], *_extreme_cells(entry, "least"), *_extreme_cells(entry, "greatest"))
         for entry in curves.values()
     )
-    units = (Unit(kind_of_key(_position_key(entry, "least"))[1]) for entry in curves.values())
+    units = (Unit(name_and_kind_of_key(_position_key(entry, "least"))[1]) for entry in curves.values())
     lines = tuple((*row, unit) for row, unit in zip(rows, units, strict=True))
     return Table((*columns, column("unit", left=True)), lines, ruled=True)
 
@@ -30,4 +30,4 @@ def _extreme_cells(entry: Mapping[str, Any], word: str) -> Iterator[Text]:
 
 
 def _position_key(entry: Mapping[str, Any], word: str) -> str:
-    return next(key for key in entry if kind_of_key(key)[0] == word)
+    return next(key for key in entry if name_and_kind_of_key(key)[0] == word)

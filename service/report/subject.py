@@ -24,7 +24,7 @@ from ..designs.judged_requirements import (
     violations_of,
 )
 from ..designs.length_with_tolerance import format_toleranced, tolerances_of
-from ..designs.stored_designs import StoredDesign, front_of, stored_design
+from ..designs.stored_designs import StoredDesign, front_of_result, stored_design
 from ..jobs.stores import has_store, open_store
 from ..render.numerals import format_cell
 from ..runs.result import Cell, Result, Row
@@ -80,7 +80,7 @@ class Subject:
     @cached_property
     def front(self) -> ParetoFront:
         """Front with its problem."""
-        return self.loaded_front or front_of(self.problem, self.metric)
+        return self.loaded_front or front_of_result(self.problem, self.metric)
 
     @cached_property
     def design(self) -> StoredDesign:

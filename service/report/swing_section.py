@@ -3,10 +3,10 @@
 import math
 from functools import cached_property
 
-from ...model.swing.summary import SwingSummary, error_shares, summarise
+from ...model.swing.summary import SwingSummary, error_shares, summarise_swing
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
-from ...objectives.tables.swing_curves import driven_error_kind, driven_side_name
+from ...objectives.tables.swing_curves import driven_side_name, kind_of_driven_side_error
 from ..questions.lever.analysis import blocks, compute_shared_options, numbers
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
@@ -27,7 +27,7 @@ class SwingOfSubject:
     def summary(self) -> SwingSummary:
         """Numbers of the swing."""
         design = self._subject.design
-        return summarise(design.mechanism, design.linkage, self._swing)
+        return summarise_swing(design.mechanism, design.linkage, self._swing)
 
     def numbers_section(self) -> Section:
         """Return the numbers of the swing, and the extremes of its curves."""
@@ -49,7 +49,10 @@ class SwingOfSubject:
         if worst is None:
             return None
         shares = error_shares(design.mechanism, design.linkage, self.summary.swing, worst.crank_angle)
-        total, unit_of_error = sum(share.error for share in shares), driven_error_kind(self.summary.swing).metric
+        total, unit_of_error = (
+            sum(share.error for share in shares),
+            kind_of_driven_side_error(self.summary.swing).metric,
+        )
         unit, factor = metric_unit_in(unit_of_error.symbol, system)
         rows = tuple(
             (

@@ -197,7 +197,7 @@ class Store(Workers):
         with self.reading() as connection:
             return connection.scalar(select(now() - func.min(jobs.c.due)).where(waiting)) or 0.0
 
-    def tables(self, number: int) -> dict[str, Any]:
+    def job_tables(self, number: int) -> dict[str, Any]:
         """Return the tables of a job's file."""
         with self.reading() as connection:
             job_by_number(connection, number)

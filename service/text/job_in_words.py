@@ -7,7 +7,7 @@ from typing import Any
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.clearance import Bar, Friction, Link
-from ...model.machine.cylinder_machines import cycle_turns
+from ...model.machine.cylinders_as_machines import cycle_turns
 from ...model.machine.loads.load_text import join_range_ends
 from ...model.machine.mechanism import Mechanism, Strength, Tolerance
 from ...model.machine.varying_numbers import Varying
@@ -15,7 +15,7 @@ from ...model.swing.end_angles import swing_start_column
 from ...objectives.kinds import count_with_noun
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.tables.design_input import column_of_variable, columns_of_numbers
+from ...objectives.tables.design_input import column_of_variable, columns_of_design_numbers
 from ...optimise.job.linear_contradictions import impossible_option_notes, impossible_options
 from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.contradictory_problems import idle_constraint_warnings
@@ -53,7 +53,7 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
         "given": [*_motion_lines(problem), *_machine_lines(problem), *_custom_lines(problem)],
         "loads": problem.mechanism.load_texts,
         "tolerances": _tolerance_lines(problem.mechanism),
-        "costs": [] if problem.costs is None else [_cost_text(*item) for item in problem.costs.by_name.items()],
+        "costs": [] if problem.costs is None else [_cost_text(*item) for item in problem.costs.costs_by_name.items()],
         "variables": [
             *(f"{name} {_length_text(problem, name)}" for name in DIMENSIONS),
             *(_varying_text(item) for item in problem.mechanism.varying),
@@ -79,9 +79,9 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
 
 def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return `problem_in_words` of a problem, with the content of files, and notes on the tables that state it."""
-    from ...optimise.job.job_notes import file_summaries, notes_of
+    from ...optimise.job.job_notes import file_summaries, job_notes
 
-    return problem_in_words(problem) | {"files": file_summaries(tables), "notes": notes_of(tables)}
+    return problem_in_words(problem) | {"files": file_summaries(tables), "notes": job_notes(tables)}
 
 
 def freedom_in_words(problem: Problem) -> str:
@@ -309,7 +309,7 @@ def _varying_text(item: Varying) -> str:
 
 def _values_text(problem: Problem, item: Discrete) -> str:
     """Return the values of a discrete variable: its rule, and its first and last values."""
-    unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
+    unit = columns_of_design_numbers(problem.mechanism.varying)[item.name][1]
     values = [f"{unit.factor * value:.6g}" for value in item.values]
     few = values if len(values) <= _MOST_VALUES else [*values[:2], "...", values[-1]]
     return f"{item.name} {item.rule}: {count_with_noun(len(values), 'value')}, {', '.join(few)} {unit.symbol}".rstrip()

@@ -17,7 +17,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.optional_packages import import_extra
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
 from ..designs.design_selection_options import chosen_row
-from ..designs.selection import chosen_rows, parse_value
+from ..designs.selection import parse_value, rows_meeting_conditions
 from ..runs.result import Result
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ class SettingOptions:
     seed: Annotated[int | None, typer.Option(min=0), "Random seed."] = None
 
     @property
-    def overrides(self) -> dict[str, Any]:
+    def stated_settings(self) -> dict[str, Any]:
         """Settings given on the command line."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
@@ -223,7 +223,7 @@ class Selection:
 
     def rows(self, result: Result) -> list[int]:
         """Return the rows of the designs, in order."""
-        return chosen_rows(result, self.where or [], sort=self.sort, reverse=self.reverse)
+        return rows_meeting_conditions(result, self.where or [], sort=self.sort, reverse=self.reverse)
 
 
 @dataclass(frozen=True)

@@ -240,7 +240,11 @@ def show_rules(screen: Console, judgement: Judgement) -> None:
             judged = f" with {len(fitting)} of {len(choices)} choices: {listed}"
         screen.print(f"It meets every range and requirement of the job{judged}.", soft_wrap=True)
     for rule in broken:
-        value = "has no value" if rule.value is None else f"is {_format_value(rule.value, rule, rule.digits)}"
+        value = (
+            "has no value"
+            if rule.value is None
+            else f"is {_format_value(rule.value, rule, rule.distinguishing_digits)}"
+        )
         miss = "" if rule.missed_by is None else f", by {_format_value(rule.missed_by, rule)}"
         screen.print(f"Not met: {rule.title} {_format_bounds(rule)} {value}{miss}.", style="bold", soft_wrap=True)
     for rule in (rule for rule in rules if rule.met):

@@ -45,7 +45,7 @@ def new_run(
 ) -> Iterator[Opened]:
     """Enter the run of a new job. files: the job and the files that it names, for the run folder."""
     with RunFolder(place, problem.name) as folder:
-        yield folder, problem, begin_run(store, folder, tables, problem.name, files)
+        yield folder, problem, store_and_claim_run(store, folder, tables, problem.name, files)
 
 
 @contextlib.contextmanager
@@ -58,9 +58,9 @@ def resumed_run(
     """
     from ...optimise.solve import require_resumable
 
-    job = stopped_job(store, text, place)
+    job = find_stopped_job(store, text, place)
     with folder_to_resume(store, job, place) as folder:
-        problem = read(store.tables(job.id), folder.path)
+        problem = read(store.job_tables(job.id), folder.path)
         require_resumable(problem, store.evaluation_records(job.id))
         claim = claim_stopped_job(store, job)
         with end_job_on_error(claim):
@@ -137,7 +137,7 @@ def job_and_attached_files(job: Path, attached: Sequence[Path]) -> list[Artefact
     ]
 
 
-def begin_run(
+def store_and_claim_run(
     store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]
 ) -> Claim:
     """Add the job of a new folder to the store, rename the folder to match, and return the claim."""
@@ -149,7 +149,7 @@ def begin_run(
     return claim
 
 
-def stopped_job(store: Store, text: str, place: Path) -> Job:
+def find_stopped_job(store: Store, text: str, place: Path) -> Job:
     """Return the job of a run to resume, given by its number or in a form that `find_run` accepts.
 
     Raises `InputError` for a run that is not in the store, or that cannot be resumed.

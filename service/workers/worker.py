@@ -220,7 +220,7 @@ def _solve(
     from ...optimise.solve import solve
 
     _report_loading(claim, 1)
-    problem = parse_with_allowed_functions(store.tables(claim.job.id), terms.allowed_quantities)
+    problem = parse_with_allowed_functions(store.job_tables(claim.job.id), terms.allowed_quantities)
     problem = with_time_limit_per_call(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
     latest = (claim.job.progress or {}).get("front")  # of an earlier claim, until this search has its own

@@ -11,7 +11,7 @@ from textwrap import dedent
 
 import pytest
 
-from slidercrank.model.kernel.batches import in_chunks, interrupted_by, poll_interruption
+from slidercrank.model.kernel.batches import interrupted_by, poll_interruption, run_in_chunks
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
@@ -22,7 +22,7 @@ HEAD = """
 
     counted = []
     os.register_at_fork(before=lambda: counted.append(threading.active_count()))
-    from slidercrank.model.kernel.batches import in_chunks
+    from slidercrank.model.kernel.batches import run_in_chunks
     from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 
     rng = np.random.default_rng(1)
@@ -118,7 +118,7 @@ def test_what_ends_one_chunk_ends_those_under_way_too() -> None:
             ended.append(begin)
 
     with interrupted_by(stop), pytest.raises(TimeoutError):
-        in_chunks(100_000, work)
+        run_in_chunks(100_000, work)
     assert begun
     assert sorted(begun) == sorted(ended)
     assert len(begun) < 100_000 // 512

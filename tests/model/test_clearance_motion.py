@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.clearance.run import ClearanceProgress, ClearanceRun, simulate
-from slidercrank.model.clearance.statistics import Estimate, summarise
+from slidercrank.model.clearance.statistics import Estimate, clearance_statistics
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Bar, Clearance
@@ -44,7 +44,7 @@ def test_one_millimetre_hardly_moves_the_slider_but_shakes_it_the_more_the_faste
         simulate(sieve(300.0), LINKAGE, PIN, cycles=2, discard=1, tolerance=1e-6),
         fast,
     ]
-    found = [summarise(run) for run in runs]
+    found = [clearance_statistics(run) for run in runs]
     shares = [summary.displacement_deviation.value for summary in found]
     peaks = [summary.peak_acceleration.value for summary in found]
     # The gap moves the slider by 1 / cos(phi) of itself at most, the penetration (below 0.1 mm) added.
@@ -62,8 +62,8 @@ def test_halving_the_tolerance_changes_the_statistics_by_less_than_their_uncerta
     Another processor rounds otherwise and draws other samples. So each difference must lie within both intervals taken
     together, and all but one in ten within the narrower promise of one interval, see `Estimate`.
     """
-    finer = summarise(simulate(sieve(400.0), LINKAGE, PIN, cycles=8, discard=2, tolerance=5e-7))
-    coarser = summarise(fast)
+    finer = clearance_statistics(simulate(sieve(400.0), LINKAGE, PIN, cycles=8, discard=2, tolerance=5e-7))
+    coarser = clearance_statistics(fast)
     within = []
     for item in fields(coarser):
         one, other = getattr(coarser, item.name), getattr(finer, item.name)
@@ -81,7 +81,7 @@ def test_halving_the_tolerance_changes_the_statistics_by_less_than_their_uncerta
 
 
 def test_the_energy_balance_closes_over_every_turn(fast: ClearanceRun) -> None:
-    summary = summarise(fast)
+    summary = clearance_statistics(fast)
     assert summary.energy_residual < 1e-3 * summary.dissipated.value
     assert np.diff(fast.dissipated).min() >= -1e-8 * fast.dissipated[-1]
     gained = summary.input_work.value + summary.load_work.value - summary.dissipated.value
@@ -154,7 +154,7 @@ def test_a_run_tells_its_progress_and_can_be_cancelled() -> None:
     assert told[1].impacts == np.count_nonzero(run.impact_times <= 2.0 * run.turn_time) > 0
     assert (run.status, run.cycles) == ("cancelled", 2)
     assert run.times[-1] == pytest.approx(2.0 * run.turn_time, rel=1e-12)
-    summary = summarise(run)
+    summary = clearance_statistics(run)
     assert summary.turns == 1
     assert summary.peak_acceleration.uncertainty is None
 
@@ -165,7 +165,7 @@ def test_a_run_that_is_cancelled_within_the_first_turn_keeps_what_it_has() -> No
     assert (run.status, run.cycles) == ("cancelled", 0)
     assert 0.0 < run.times[-1] < run.turn_time
     with pytest.raises(InputError, match="complete turn"):
-        summarise(run)
+        clearance_statistics(run)
 
 
 def test_the_uncertainty_is_the_confidence_interval_of_the_mean() -> None:

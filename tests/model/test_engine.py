@@ -107,7 +107,7 @@ def test_without_a_motor_the_flywheel_gains_what_the_gas_gives_at_every_angle(di
 
 def test_a_constant_torque_keeps_the_mean_speed_of_an_engine_by_taking_its_work() -> None:
     machine, linkage = Mechanism(speed=200.0, loads=(engine(),)), Linkage(0.027, 0.1, 0.004)
-    running = Runner(machine, linkage).under_constant_torque(0.05)
+    running = Runner(machine, linkage).run_under_constant_torque(0.05)
     whole = QUANTITIES["indicated_work"].evaluate(machine, np.array([[0.027, 0.1, 0.004]])).values[0]
     assert -running.motor_torque[0] * 2.0 * math.pi == pytest.approx(whole, rel=1e-9)
     energy = 0.5 * 0.05 * running.speed**2

@@ -12,7 +12,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerances, Window
 from slidercrank.model.signals import fast_torque_and_error
-from slidercrank.model.signals.fast_torque_and_error import LANES, Screened, is_supported
+from slidercrank.model.signals.fast_torque_and_error import LANES, Screened, supports_screening
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import SMOOTH, STROKES, TABLES, TOLERANCES, Array, random_designs, random_machine
@@ -29,7 +29,7 @@ def screen(machine: Mechanism, signal: Signal, designs: Array, *, gradients: boo
 @pytest.mark.parametrize("branch", ["open", "crossed"])
 def test_screening_equals_peaks_where_the_curve_is_smooth(signal: Signal, branch: Branch) -> None:
     machine = dataclasses.replace(SMOOTH, branch=branch)
-    assert is_supported(machine, signal)
+    assert supports_screening(machine, signal)
     exact = find_peaks(machine, signal, DESIGNS, gradients=True)
     fast = screen(machine, signal, DESIGNS, gradients=True)
     assert exact.gradients is not None
@@ -84,12 +84,12 @@ def test_number_of_designs_does_not_matter(count: int) -> None:
 
 def test_what_screening_does_not_handle_it_says() -> None:
     windowed = Mechanism(tolerances=Tolerances(window=Window(end=0.5)))
-    assert not is_supported(TABLES, Signal.TORQUE)
-    assert not is_supported(windowed, Signal.POSITION_ERROR)
-    assert not is_supported(SMOOTH, Signal.TORQUE, during="inward stroke")
-    assert not is_supported(SMOOTH, Signal.GUIDE_FORCE)
+    assert not supports_screening(TABLES, Signal.TORQUE)
+    assert not supports_screening(windowed, Signal.POSITION_ERROR)
+    assert not supports_screening(SMOOTH, Signal.TORQUE, during="inward stroke")
+    assert not supports_screening(SMOOTH, Signal.GUIDE_FORCE)
     # The position error does not depend on loads.
-    assert is_supported(dataclasses.replace(TABLES, tolerances=TOLERANCES), Signal.POSITION_ERROR)
+    assert supports_screening(dataclasses.replace(TABLES, tolerances=TOLERANCES), Signal.POSITION_ERROR)
 
 
 @pytest.mark.parametrize("gradients", [False, True])

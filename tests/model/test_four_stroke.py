@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.gas_work import gas_cycle_number, indicator_diagram
+from slidercrank.model.cycle.gas_work import evaluate_on_gas_cycle, indicator_diagram
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke
@@ -145,7 +145,7 @@ def test_several_cylinders_share_a_crankshaft_and_one_of_two_strokes_keeps_its_o
     design = np.array([[0.043, 0.15, 0.0]])
     work, cycles = (
         [
-            gas_cycle_number(Mechanism(speed=300.0, loads=loads), design, of)[0][0]
+            evaluate_on_gas_cycle(Mechanism(speed=300.0, loads=loads), design, of)[0][0]
             for loads in ((four,), (two,), (four, two))
         ]
         for of in (lambda gas: gas.work, lambda gas: gas.cycle_work)

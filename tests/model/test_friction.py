@@ -19,7 +19,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import torque_averages
-from slidercrank.model.signals.fast_torque_and_error import is_supported
+from slidercrank.model.signals.fast_torque_and_error import supports_screening
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
@@ -264,9 +264,9 @@ def test_rms_torque_is_that_of_adaptive_quadrature() -> None:
 
 def test_machine_with_friction_is_not_screened() -> None:
     rubbing = dataclasses.replace(SMOOTH, friction=Friction(guide=0.1))
-    assert is_supported(SMOOTH, Signal.TORQUE)
-    assert not is_supported(rubbing, Signal.TORQUE)
-    assert is_supported(rubbing, Signal.POSITION_ERROR)
+    assert supports_screening(SMOOTH, Signal.TORQUE)
+    assert not supports_screening(rubbing, Signal.TORQUE)
+    assert supports_screening(rubbing, Signal.POSITION_ERROR)
 
 
 @pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])

@@ -107,8 +107,10 @@ def test_kernels_that_nobody_else_can_have_put_there_are_read_where_nothing_can_
     kernels = home / "slidercrank/kernels"
     kernels.mkdir(parents=True)
     kernels.parent.chmod(0o777 if open_to_others else 0o755)
-    refusal = kernel_digest._refusal
-    monkeypatch.setattr(kernel_digest, "_refusal", lambda of: "cannot be written" if of == kernels else refusal(of))
+    refusal = kernel_digest._refusal_reason
+    monkeypatch.setattr(
+        kernel_digest, "_refusal_reason", lambda of: "cannot be written" if of == kernels else refusal(of)
+    )
     found = choose_folder()
     assert found.folder is not None
     assert found.folder.parent.name == f"slidercrank-{os.getuid()}"

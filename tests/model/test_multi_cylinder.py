@@ -14,7 +14,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
+from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement, single_cylinder_machine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks
@@ -91,7 +91,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
     machine, linkage = random_whole(3 * seed + 1)
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
     found = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
-    machine = single_cylinder(machine)
+    machine = single_cylinder_machine(machine)
     peak = find_peaks(machine, Signal.TORQUE, design, limit=1)
     averages = torque_averages(machine, design)
     assert abs(found.peak.value) == pytest.approx(peak.values[0, 0], rel=1e-10)
@@ -167,4 +167,4 @@ def test_impossible_cylinders_are_refused(given: dict[str, tuple[float, ...]], s
 
 def test_without_cylinders_there_is_no_whole() -> None:
     with pytest.raises(InputError, match=r"cylinders = \{ phases"):
-        member_machines(PISTONS)
+        machines_of_arrangement(PISTONS)

@@ -84,7 +84,7 @@ def test_the_crank_under_a_motor_feels_the_same_load(seed: int) -> None:
     machine, _, designs = random_case(seed)
     linkage = Linkage(designs[0, 0], designs[0, 1], designs[0, 2], machine.branch)
     equation = CrankEquation(replace(machine, drive=Drive(motor=ConstantTorque(torque=1.0))), linkage)
-    for stretch in equation.spans_of_cycle(machine.direction):
+    for stretch in equation.spans_in_passing_order(machine.direction):
         theta = np.linspace(stretch.low, stretch.high, 7)[1:-1]
         load = cycle(machine, linkage, theta)
         power = load.load * load.slider_velocity * np.sign(load.slider_position) / machine.speed

@@ -16,7 +16,7 @@ from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
+from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement, single_cylinder_machine
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
@@ -188,7 +188,7 @@ def test_four_strokes_in_line_are_a_dense_sweep_of_their_sum() -> None:
     machine, design = SHAFTS["four-stroke"], random_designs(1, seed=2, least_margin=0.5)
     linkage, theta = linkage_of(design[0]), np.linspace(0.0, 2.0 * TURN, 40_001)[:-1]
     torque = np.zeros(len(theta))
-    for own in member_machines(machine):
+    for own in machines_of_arrangement(machine):
         torque += cycle(own.mechanism, linkage, theta + own.lead).torque
     found = find_peaks(machine, Signal.TORQUE, design, limit=1)
     assert found.values[0, 0] == pytest.approx(np.abs(torque).max(), rel=1e-6)
@@ -206,7 +206,7 @@ def test_works_and_volumes_are_those_of_all_cylinders_and_ratios_those_of_one() 
         **dict.fromkeys(("clearance_ratio", "mean_effective_pressure", "volumetric_efficiency", "stroke"), 1.0),
     }.items():
         one, all_of_them = (
-            QUANTITIES[name].evaluate(each, designs).values for each in (single_cylinder(machine), machine)
+            QUANTITIES[name].evaluate(each, designs).values for each in (single_cylinder_machine(machine), machine)
         )
         assert all_of_them == pytest.approx(factor * one, rel=1e-10), name
 

@@ -10,11 +10,11 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.cylinder_machines import cycle_turns
+from slidercrank.model.machine.cylinders_as_machines import cycle_turns
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.quantity import Array
-from slidercrank.objectives.tables.curve_deviation import Deviation, deviations
+from slidercrank.objectives.tables.curve_deviation import Deviation, curve_deviations
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_machine
 
@@ -29,7 +29,7 @@ def computed(mechanism: Mechanism, linkage: Linkage, angles: Array) -> dict[str,
 
 
 def one(mechanism: Mechanism, linkage: Linkage, angles: Array, name: str, values: Array) -> Deviation:
-    (found,) = deviations(mechanism, linkage, angles, {name: values})
+    (found,) = curve_deviations(mechanism, linkage, angles, {name: values})
     return found
 
 
@@ -43,7 +43,7 @@ def test_known_shifts_of_random_machines_are_recovered() -> None:
         true = computed(machine, linkage, angles + turn)
         sizes = {name: float(np.abs(values).max()) for name, values in true.items()}
         measured = {name: true[name] - 0.1 * sizes[name] for name in SMOOTH_CURVES}
-        for found in deviations(machine, linkage, angles, measured):
+        for found in curve_deviations(machine, linkage, angles, measured):
             assert found.fit is not None
             size = sizes[found.name]
             off = math.remainder(found.fit.crank_angle - turn, 2.0 * math.pi)
@@ -64,7 +64,7 @@ def test_a_cycle_of_two_turns_is_shifted_by_up_to_a_whole_turn() -> None:
         linkage, shift = linkage_of(design, machine.branch), random.uniform(math.pi, 2.0 * math.pi)
         angles = random.uniform(0.0, 30.0, 300)
         true = computed(machine, linkage, angles + shift)
-        load, position = deviations(
+        load, position = curve_deviations(
             machine, linkage, angles, {name: true[name] for name in ("load", "slider_position")}
         )
         assert load.fit is not None
@@ -157,7 +157,7 @@ def test_the_computed_curve_itself_needs_no_shift() -> None:
         machine = random_machine(random)
         linkage = linkage_of(design, machine.branch)
         angles = np.linspace(0.0, 2.0 * math.pi, 50)
-        for found in deviations(machine, linkage, angles, computed(machine, linkage, angles)):
+        for found in curve_deviations(machine, linkage, angles, computed(machine, linkage, angles)):
             assert (found.rms, found.largest) == (0.0, 0.0)
             assert found.fit is None or abs(found.fit.crank_angle) < 1e-6
 

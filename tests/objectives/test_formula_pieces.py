@@ -51,7 +51,7 @@ def tied(of: Quantity, seed: int, *, above: bool = True) -> Any:
 
 @pytest.mark.parametrize("text", CONVEX)
 def test_at_a_tie_the_slope_in_every_direction_is_the_greatest_of_the_pieces(text: str) -> None:
-    of = formulas().quantity(text, "here")
+    of = formulas().quantity_of_text(text, "here")
     x = tied(of, 5)
     assert len(x) > 3
     found = of.pieces(MACHINE, x)
@@ -69,7 +69,7 @@ def test_at_a_tie_the_slope_in_every_direction_is_the_greatest_of_the_pieces(tex
 
 @pytest.mark.parametrize("text", MIXED)
 def test_a_formula_with_kinks_of_both_kinds_is_known_from_both_sides(text: str) -> None:
-    of = formulas().quantity(text, "here")
+    of = formulas().quantity_of_text(text, "here")
     x = designs(100, 7)
     found = of.pieces(MACHINE, x)
     values = of.evaluate(MACHINE, x).values

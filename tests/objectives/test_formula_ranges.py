@@ -11,7 +11,15 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.formula.expression import ARGUMENTS, Call, Name, Node, Number, linear_of, linear_unknown
+from slidercrank.objectives.formula.expression import (
+    ARGUMENTS,
+    Call,
+    Name,
+    Node,
+    Number,
+    linear_form_of_node,
+    linear_form_of_unknown,
+)
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 
 BOX = {"a": (0.5, 2.0), "b": (-1.5, 0.75), "c": (-3.0, -0.25), "d": (0.0, 1.0)}
@@ -67,7 +75,7 @@ def test_no_value_of_a_random_formula_is_beyond_its_bounds() -> None:
     while taken < 600:
         node = random_node(random, 3)
         try:
-            found = RANGES.bounds(node)
+            found = RANGES.bounds_of_formula(node)
         except InputError:
             continue
         for at in points:
@@ -93,7 +101,7 @@ def test_bounds_of_one_function_are_reached(function: str) -> None:
         exponent = (Number(3.0, "3"),) if function == "**" else ()
         node = Call(function, (*(Name(name) for name in names), *exponent))
         try:
-            found = RANGES.bounds(node)
+            found = RANGES.bounds_of_formula(node)
         except InputError:
             continue
         held = []
@@ -135,7 +143,7 @@ def test_linear_formulas_have_exactly_the_values_of_what_they_stand_for() -> Non
 
     while taken < 200:
         node, exact = node_of(3)
-        found = linear_of(node, {name: linear_unknown(name) for name in names})
+        found = linear_form_of_node(node, {name: linear_form_of_unknown(name) for name in names})
         if found is None or not found.factors:
             continue
         factors = dict(found.factors)
@@ -145,5 +153,5 @@ def test_linear_formulas_have_exactly_the_values_of_what_they_stand_for() -> Non
 
 
 def test_even_powers_are_never_negative_and_odd_ones_may_be() -> None:
-    assert RANGES.bounds(Call("**", (Name("b"), Number(2.0, "2")))).lower == 0.0
-    assert RANGES.bounds(Call("**", (Name("b"), Number(3.0, "3")))).lower <= BOX["b"][0] ** 3
+    assert RANGES.bounds_of_formula(Call("**", (Name("b"), Number(2.0, "2")))).lower == 0.0
+    assert RANGES.bounds_of_formula(Call("**", (Name("b"), Number(3.0, "3")))).lower <= BOX["b"][0] ** 3

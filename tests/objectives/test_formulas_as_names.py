@@ -119,7 +119,7 @@ def test_sine_cosine_and_tangent_divide_where_their_angles_keep_them_off_zero() 
         inside = np.linspace(low, high, 4001)
         for function in ("sin", "cos", "tan"):
             node = Call(function, (Name("angle"),))
-            found = FormulaBounds({"angle": Interval(low, high)}, {}, {}).bounds(node)
+            found = FormulaBounds({"angle": Interval(low, high)}, {}, {}).bounds_of_formula(node)
             values = getattr(np, function)(inside)
             assert found.lower <= values.min() + 1e-12
             assert values.max() <= found.upper + 1e-12

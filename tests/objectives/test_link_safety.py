@@ -14,7 +14,7 @@ from slidercrank.model.machine.clearance import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Criterion, Mechanism
-from slidercrank.objectives.link_strength import critical_stress
+from slidercrank.objectives.link_strength import critical_stress_formula
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import STRENGTH, Array, random_designs
 from tests.model.strength.sections import eye_rows, linkage_with, random_bars, stress_rows
@@ -78,12 +78,14 @@ def test_a_slender_bar_buckles_at_the_least_eigenvalue_of_its_bending(held: floa
         sides[0] = -math.sqrt(2.0)  # of -2 in the first row and -1 in the second, made symmetric
     found = eigh_tridiagonal(np.full(rows, 2.0), sides, eigvals_only=True, select="i", select_range=(0, 0))
     least = float(found[0]) / h**2
-    stress = critical_stress(0, 1, held, STEEL.elasticity, STEEL.yield_strength)({0: length, 1: side}.__getitem__)
+    stress = critical_stress_formula(0, 1, held, STEEL.elasticity, STEEL.yield_strength)(
+        {0: length, 1: side}.__getitem__
+    )
     assert stress == pytest.approx(STEEL.elasticity * side**2 / 12.0 * least, rel=1e-5)
 
 
 def test_eulers_and_johnsons_stress_meet_smoothly_at_half_the_yield_strength() -> None:
-    formula = critical_stress(0, 1, 1.0, STEEL.elasticity, STEEL.yield_strength)
+    formula = critical_stress_formula(0, 1, 1.0, STEEL.elasticity, STEEL.yield_strength)
     slender = math.sqrt(2.0 * math.pi**2 * STEEL.elasticity / STEEL.yield_strength)
     side = math.sqrt(12.0) / slender
 

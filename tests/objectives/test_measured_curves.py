@@ -26,7 +26,7 @@ def meaning(name: str) -> tuple[str, float]:
 
 def test_every_curve_is_read_as_tables_in_metric_inch_and_si_call_it() -> None:
     for curve in every_curve(SMOOTH, LINKAGE, np.zeros(1)):
-        for face in (curve.kind.si, curve.kind.metric, curve.kind.inch):
+        for face in (curve.kind.si_display_unit, curve.kind.metric, curve.kind.inch):
             if face is not None:
                 for name in (curve.name + face.suffix, f"{curve.title} [{face.symbol}]"):
                     found, factor = meaning(name)

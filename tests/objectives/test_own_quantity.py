@@ -17,7 +17,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.kinds import RATIO, kind_in
+from slidercrank.objectives.kinds import RATIO, kind_displayed_in
 from slidercrank.objectives.own.designs import Designs, magnitude
 from slidercrank.objectives.own.quantity import Gradient, OwnQuantity
 from slidercrank.objectives.registry import QUANTITIES
@@ -28,7 +28,7 @@ ANGLES = np.linspace(0.1, 6.2, 40)
 
 
 def own(function: Callable[[Designs], Any], gradient: Gradient = "complex step", name: str = "mine") -> OwnQuantity:
-    return OwnQuantity(name=name, function=function, title="mine", kind=kind_in("N", 1.0), gradient=gradient)
+    return OwnQuantity(name=name, function=function, title="mine", kind=kind_displayed_in("N", 1.0), gradient=gradient)
 
 
 # What the software has already, written as an engineer would.
@@ -251,7 +251,7 @@ def test_wrong_declarations_are_refused() -> None:
     [("m/s^3", "mine_m_s3"), ("MPa", "mine_MPa"), ("", "mine"), ("N m", "mine_Nm"), ("kg m^2", "mine_kg_m2")],
 )
 def test_field_carries_the_unit(symbol: str, field: str) -> None:
-    assert OwnQuantity(name="mine", function="a:b", title="mine", kind=kind_in(symbol, 1.0)).field == field
+    assert OwnQuantity(name="mine", function="a:b", title="mine", kind=kind_displayed_in(symbol, 1.0)).field == field
 
 
 def test_quantity_can_be_copied_and_sent() -> None:

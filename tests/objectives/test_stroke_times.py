@@ -163,10 +163,12 @@ def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
         elapsed = Harmonics(cosines=(a,)).elapsed_time
         theta = np.linspace(-3.1, 3.1, 200)
         wanted = 2.0 * np.arctan(math.sqrt((1.0 - a) / (1.0 + a)) * np.tan(0.5 * theta)) / math.sqrt(1.0 - a * a)
-        found = elapsed.up_to(theta) - elapsed.up_to(np.zeros(1))
+        found = elapsed.elapsed_up_to(theta) - elapsed.elapsed_up_to(np.zeros(1))
         # 1 - a is known to rounding alone: the time near it to 1e-16 / (1 - a) of itself.
         np.testing.assert_allclose(found, wanted, rtol=1e-13 + 4e-16 / (1.0 - abs(a)), atol=1e-13)
-        assert elapsed.full_turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
+        assert elapsed.elapsed_over_full_turn == pytest.approx(
+            TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a))
+        )
 
 
 def test_a_profile_that_moves_with_the_mirror_image_swaps_the_strokes() -> None:
@@ -270,7 +272,13 @@ def test_a_robust_time_ratio_along_a_profile_is_of_time(case: Case) -> None:
     design = np.array([[0.04, 0.12, 0.02]])
     robust = RobustQuantity(inner=QUANTITIES["time_ratio"], side="high", case=case)
     found = float(robust.evaluate(machine, design).values[0])
-    limits = np.array([TOLERANCES.crank.limit(0.04), TOLERANCES.rod.limit(0.12), TOLERANCES.offset.limit(0.02)])
+    limits = np.array(
+        [
+            TOLERANCES.crank.deviation_limit(0.04),
+            TOLERANCES.rod.deviation_limit(0.12),
+            TOLERANCES.offset.deviation_limit(0.02),
+        ]
+    )
     corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) * limits
     worst = max(value("time_ratio", machine, design + corner) for corner in corners)
     plain = value("time_ratio", machine, design)

@@ -15,8 +15,8 @@ from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, without_inertia
+from slidercrank.model.swing.summary import summarise_swing
+from slidercrank.model.swing.swing import Swing, slow_swing
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.swing_columns import quantities_for_swing, swing_quantities, swing_quantity_facts
 from tests.model.cases import Array
@@ -54,7 +54,7 @@ def values(machine: Mechanism, swing: Swing, design: Array) -> dict[str, float]:
 @pytest.mark.parametrize("friction", [False, True])
 def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
     for machine, linkage, swing in cases(14, seed=71, friction=friction):
-        one = summarise(machine, linkage, swing)
+        one = summarise_swing(machine, linkage, swing)
         found = values(machine, swing, design_of(linkage))
         kind = "force" if swing.driver == "slider" else "torque"
         error = "swing_angle_error" if swing.driver == "slider" else "swing_position_error"
@@ -74,7 +74,7 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
         for name, value in expected.items():
             assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forward)), name
         if friction:
-            slow = summarise(replace(machine, friction=Friction()), linkage, without_inertia(swing))
+            slow = summarise_swing(replace(machine, friction=Friction()), linkage, slow_swing(swing))
             held = max(map(abs, slow.drive_start + slow.drive_end))
             assert found.pop(f"holding_{kind}_without_friction") == pytest.approx(held, rel=1e-9)
         assert not set(found) - {"swing_efficiency", f"least_{kind}_forth", f"least_{kind}_back"}
@@ -97,7 +97,7 @@ def test_least_drives_are_those_of_a_dense_sweep(friction: bool) -> None:
     """Signed along the motion of each way; a linkage that both ways must drive holds itself."""
     share, held = np.linspace(0.0, 1.0, 20_001), set()
     for machine, linkage, swing in cases(6, seed=74, friction=friction):
-        found, slow = values(machine, swing, design_of(linkage)), without_inertia(swing)
+        found, slow = values(machine, swing, design_of(linkage)), slow_swing(swing)
         least = []
         for back, way in ((False, "forth"), (True, "back")):
             curves = swing_curves(machine, linkage, slow, share, back=back)
@@ -106,7 +106,7 @@ def test_least_drives_are_those_of_a_dense_sweep(friction: bool) -> None:
             assert value <= along.min() + 1e-12 * np.abs(along).max()
             assert value == pytest.approx(along.min(), abs=1e-3 * np.abs(along).max())
             least.append(value)
-        assert summarise(machine, linkage, slow).holds == (friction and min(least) >= 0.0)
+        assert summarise_swing(machine, linkage, slow).holds == (friction and min(least) >= 0.0)
         held.add(min(least) > 0.0)
     assert False in held
 

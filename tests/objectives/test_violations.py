@@ -12,7 +12,7 @@ import slidercrank as sc
 from slidercrank.model.machine.drive import Drive
 from slidercrank.model.machine.mechanism import Material, Mechanism, Strength
 from slidercrank.objectives.registry import FACTS
-from slidercrank.objectives.tables.evaluate_quantities import violations
+from slidercrank.objectives.tables.evaluate_quantities import violations_of_allowables
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.sections_table import EXAMPLE
 from tests.model.cases import random_designs
@@ -89,7 +89,7 @@ def test_a_value_that_is_allowed_to_rounding_is_not_violated() -> None:
     allowed = machine.strength.material.bearing_pressure
     name = "pin_pressure_crank_pin"
     for factor, by in ((1.0, 0.0), (1.0 + 1e-9, 0.0), (1.0 + 1e-6, 1e-6 * allowed), (math.inf, math.inf)):
-        found = violations(machine, {name: factor * allowed}.get)
+        found = violations_of_allowables(machine, {name: factor * allowed}.get)
         assert found.get(name, np.zeros(1)) == pytest.approx(by, rel=1e-6)
 
 

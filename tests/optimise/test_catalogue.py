@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import distance
@@ -116,7 +116,7 @@ def test_other_signs_between_cells_and_brackets_are_read(sign: str) -> None:
 
 def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) -> None:
     job = written(tmp_path, catalogue(0, 60))
-    (note,) = [note for note in notes_of(read_job(job)) if "rows" in note]
+    (note,) = [note for note in job_notes(read_job(job)) if "rows" in note]
     assert re.fullmatch(r"gearmotor: of 60 rows \d (is|are) searched; the others lose in peak_torque max .*", note)
     assert needed_files(job) == [tmp_path / "gearmotors.csv"]
     one = load_job(written(tmp_path, f"{HEADER}\nA,10,5,1\n"))

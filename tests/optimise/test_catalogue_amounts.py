@@ -17,7 +17,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
 from tests.optimise.catalogues import front_of
 
@@ -140,13 +140,13 @@ def test_the_refusal_of_a_price_that_a_catalogue_lacks_begins_with_the_columns_t
 
 
 def test_notes_say_which_rows_lose_in_what_and_what_limits_nothing() -> None:
-    text = "\n".join(notes_of(pusher()))
+    text = "\n".join(job_notes(pusher()))
     assert "gearmotor: of 6 rows 1 is searched; the others lose in peak_torque max: GM 30 to GM 150, GM 45 to" in text
     assert "not used, but stored with each design: price (EUR) and maker" in text
-    text = "\n".join(notes_of(pusher(objectives={"price": "minimise"})))
+    text = "\n".join(job_notes(pusher(objectives={"price": "minimise"})))
     assert "gearmotor: not used, but stored with each design: maker" in text
     table = "name,Peak torque (N m),price (EUR)\nA,40,\nB,40,3\n"
-    text = "\n".join(notes_of(pusher(table, objectives={"price": "minimise"})))
+    text = "\n".join(job_notes(pusher(table, objectives={"price": "minimise"})))
     assert "of 2 rows 1 is searched; omitted: A (no price, which the job requires)" in text
     assert "the column Peak torque (N m) is read as peak_torque max (N m)" in text
     with pytest.raises(JobError, match="must have a row with price, which the job requires; got none"):
@@ -165,7 +165,7 @@ def test_a_column_called_as_a_number_of_the_mechanism_is_asked_about() -> None:
 def test_rows_beyond_the_jobs_own_limit_on_an_amount_are_left_out_in_a_note_and_counted_once() -> None:
     for bound in ("400 EUR", "430 EUR"):
         found = parse_job(tables := pusher(constraints={"price": {"max": bound}}))
-        (note,) = [line for line in notes_of(tables) if line.startswith("gearmotor: of")]
+        (note,) = [line for line in job_notes(tables) if line.startswith("gearmotor: of")]
         (label,) = {variant.labels[0] for variant in found.variants}
         dear = ["GM 150", "GM 110", "GM 80", *(["GM 60"] if bound == "400 EUR" else [])]
         assert note.startswith("gearmotor: of 6 rows 1 is searched; omitted: ")

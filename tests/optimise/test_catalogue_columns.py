@@ -59,7 +59,7 @@ def test_limits_on_random_formulas_are_those_of_constraints() -> None:
     while taken < 40:
         text = random_formulas.random_formula(random, depth=2)[0]
         try:
-            of = formulas.quantity(text, "key")
+            of = formulas.quantity_of_text(text, "key")
         except JobError:  # the same for every design
             continue
         word, value = random.choice(["min", "max", "equals"]), f"{random.uniform(-100.0, 300.0):.4g}"

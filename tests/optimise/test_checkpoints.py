@@ -265,11 +265,11 @@ def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
         yield given
 
     one = Checkpoints(keep=kept.append, identity=lambda: mine)
-    one.step("x", (np.ones(2),), lambda: next(compute()), first)
+    one.recorded_step("x", (np.ones(2),), lambda: next(compute()), first)
     one.end_round()
     two = Checkpoints(past=kept, identity=lambda: mine)
     assert two.replaying
-    found = two.step("x", (np.ones(2),), lambda: (np.zeros(0),), again)
+    found = two.recorded_step("x", (np.ones(2),), lambda: (np.zeros(0),), again)
     assert not two.replaying
     assert again.evaluations == first.evaluations == 7
     for here, there in zip(found, given, strict=True):
@@ -280,11 +280,11 @@ def test_a_round_whose_last_step_was_kept_before_it_ended_is_not_reported_again(
     kept: list[Record] = []
     one = Checkpoints(keep=kept.append, identity=lambda: Identity("a", "b"))
     for number in range(2):
-        one.step("x", (np.array([float(number)]),), lambda: (np.ones(1),), Counter())  # longer than the pause
+        one.recorded_step("x", (np.array([float(number)]),), lambda: (np.ones(1),), Counter())  # longer than the pause
         assert one.end_round()
     two = Checkpoints(past=kept, keep=kept.append, identity=lambda: Identity("a", "b"))
     for number in range(2):
-        two.step("x", (np.array([float(number)]),), lambda: (np.zeros(1),), Counter())
+        two.recorded_step("x", (np.array([float(number)]),), lambda: (np.zeros(1),), Counter())
         assert not two.end_round()
     assert [record.rounds for record in kept] == [0, 1, 1, 2]
 
@@ -296,7 +296,7 @@ def test_closed_checkpoints_neither_ask_nor_keep() -> None:
         one.poll()
     one.close()
     one.poll()
-    one.step("x", (), lambda: (np.ones(1),), Counter())
+    one.recorded_step("x", (), lambda: (np.ones(1),), Counter())
     one.end_round()
     assert kept == []
 
@@ -314,8 +314,8 @@ def test_the_time_of_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(checkpoints, "time", clock)
     one = Checkpoints(keep=kept.append, identity=lambda: Identity("a", "b"))
     clock.now = 5.0
-    one.step("x", (), lambda: (np.ones(1),), Counter())
+    one.recorded_step("x", (), lambda: (np.ones(1),), Counter())
     clock.now = 100.0
     two = Checkpoints(past=kept, identity=lambda: Identity("a", "b"))
     clock.now = 101.0
-    assert two.seconds == 6.0
+    assert two.elapsed_seconds == 6.0

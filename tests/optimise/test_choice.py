@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.optimise.front.dominance import dominating, nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, choose_designs, ideal_and_range
+from slidercrank.optimise.front.hypervolume import REFERENCE, choose_designs_by_hypervolume, ideal_and_range
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def test_a_choice_is_worth_what_the_greedy_one_is(kind: str) -> None:
         values = points(random, kind)
         count = int(random.integers(1, len(values) + 1))
         always = random.integers(0, len(values), int(random.integers(0, 3))).tolist()
-        chosen = choose_designs(values, count, always=tuple(always))
+        chosen = choose_designs_by_hypervolume(values, count, always=tuple(always))
         assert len(chosen) == len(set(chosen.tolist())) == count
         assert set(list(dict.fromkeys(always))[:count]) <= set(chosen.tolist())
         ideal, span = ideal_and_range(values)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.front.choose_design import Priority, closeness, knee, lexicographic, topsis
+from slidercrank.optimise.front.choose_design import Priority, knee_row, lexicographic, topsis, topsis_closeness
 from tests.optimise.independent import Array
 from tests.service import fronts
 
@@ -34,7 +34,7 @@ def random_front(seed: int, n: int = 40, m: int = 3) -> Array:
 
 def test_closeness_is_that_of_the_book() -> None:
     """Printed as 0.643, 0.268, 0.613, 0.312, from intermediate results of four digits: 1e-3 is theirs."""
-    found = closeness(AIRCRAFT, WEIGHTS, normalisation="vector")
+    found = topsis_closeness(AIRCRAFT, WEIGHTS, normalisation="vector")
     assert found == pytest.approx([0.643, 0.268, 0.613, 0.312], abs=1e-3)
     assert topsis(AIRCRAFT, WEIGHTS, normalisation="vector") == 0
 
@@ -43,7 +43,7 @@ def test_closeness_is_one_at_the_ideal_and_zero_at_the_worst() -> None:
     """By hand: ranges 10 and 4. The middle is 0.5 and 0.25 of them from the best, with weights 3/4 and 1/4."""
     values = np.array([[0.0, 1.0], [5.0, 2.0], [10.0, 5.0]])
     best, worst = math.hypot(0.375, 0.0625), math.hypot(0.375, 0.1875)
-    assert closeness(values, (3.0, 1.0)) == pytest.approx([1.0, worst / (best + worst), 0.0], rel=1e-14)
+    assert topsis_closeness(values, (3.0, 1.0)) == pytest.approx([1.0, worst / (best + worst), 0.0], rel=1e-14)
 
 
 @pytest.mark.parametrize("normalisation", ["range", "vector"])
@@ -64,8 +64,12 @@ def test_a_tie_goes_to_the_better_in_the_other_objectives() -> None:
 def test_topsis_by_range_does_not_depend_on_units_or_zero() -> None:
     values = random_front(3)
     moved = values * np.array([2.0, 1e-6, 1e6]) + np.array([-1e3, 7.0, 0.0])
-    assert closeness(moved, (1.0, 2.0, 3.0)) == pytest.approx(closeness(values, (1.0, 2.0, 3.0)), rel=1e-9)
-    assert closeness(values, (2.0, 4.0, 6.0)) == pytest.approx(closeness(values, (1.0, 2.0, 3.0)), rel=1e-12)
+    assert topsis_closeness(moved, (1.0, 2.0, 3.0)) == pytest.approx(
+        topsis_closeness(values, (1.0, 2.0, 3.0)), rel=1e-9
+    )
+    assert topsis_closeness(values, (2.0, 4.0, 6.0)) == pytest.approx(
+        topsis_closeness(values, (1.0, 2.0, 3.0)), rel=1e-12
+    )
 
 
 def test_more_weight_never_picks_a_worse_value_of_two_objectives() -> None:
@@ -114,7 +118,7 @@ def test_a_front_is_picked_by_the_names_of_its_objectives() -> None:
     torque, angle = 1, 2
     assert front.topsis({"peak_torque": 3.0}) == np.argmin(front.values[:, torque])
     assert front.topsis({"transmission_angle": 1.0, "peak_torque": 2.0}) == topsis(front.values, (0.0, 2.0, 1.0, 0.0))
-    assert front.knee() == knee(front.values)
+    assert front.knee() == knee_row(front.values)
     row = front.lexicographic(Priority(quantity="peak_torque", share=0.2), "transmission_angle")
     assert row in brute_force(front.values, [(torque, 0.0, 0.2), (angle, 0.0, 0.0)])
     near = front.lexicographic(Priority(quantity="peak_torque", absolute=1.0), "transmission_angle")

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.choose_design import knee, lexicographic, scale_by_range, topsis
+from slidercrank.optimise.front.choose_design import knee_row, lexicographic, scale_by_range, topsis
 from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range, ignore_progress
 from slidercrank.optimise.front.saved_front import SAME, column_ranges, is_constant
 from slidercrank.optimise.front.stationarity import slack_of
@@ -61,7 +61,7 @@ def test_a_last_bit_of_a_constant_objective_changes_no_choice() -> None:
     for _ in range(100):
         values, bits = noisy(random, int(random.integers(2, 30)))
         order = [(2, 0.0, 0.0), (0, 0.0, 0.3), (1, 0.0, 0.0)]
-        assert knee(bits) == knee(values)
+        assert knee_row(bits) == knee_row(values)
         assert topsis(bits, [1.0, 2.0, 3.0]) == topsis(values, [1.0, 2.0, 3.0])
         assert lexicographic(bits, order) == lexicographic(values, order)
         assert (scale_by_range(bits)[:, 2] == 0.0).all()
@@ -72,12 +72,12 @@ def test_a_last_bit_of_a_constant_objective_changes_no_choice() -> None:
 
 def test_distances_from_a_target_that_is_met_are_rounding() -> None:
     values = np.array([[3e-16, 1.0], [0.0, 2.0], [1e-16, 0.5]])
-    assert knee(values, size=[0.28, 0.0]) == 2
+    assert knee_row(values, size=[0.28, 0.0]) == 2
     assert column_ranges(values, size=[0.28, 0.0]).tolist() == [0.0, 1.5]
 
 
 def test_what_has_no_value_is_never_the_best() -> None:
-    assert knee(np.array([[np.inf, 1.0], [5.0, 1.0]])) == 1
+    assert knee_row(np.array([[np.inf, 1.0], [5.0, 1.0]])) == 1
 
 
 @pytest.mark.parametrize("bits", [-40, -1, 0, 1, 40])

@@ -16,7 +16,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 
 FOUR_STROKE = {"torque_angles": ["0 deg", "300 deg", "600 deg"], "torques": [0.0, -20.0, 0.0], "cycle": "720 deg"}
 POINTS = ["0 deg", "90 deg", "180 deg", "270 deg"]
@@ -192,6 +192,6 @@ def test_a_front_is_that_of_the_same_speed() -> None:
 def test_a_swing_is_told_that_it_has_no_time_of_a_cycle() -> None:
     swing = job({"cycle_time": "2 s", "direction": "clockwise"})
     swing |= {"motion": {"kind": "swing", "from": "0 deg", "to": "60 deg"}, "objectives": {"rod_to_crank": "minimise"}}
-    notes = notes_of(swing)
+    notes = job_notes(swing)
     assert "mechanism.cycle_time: a swing is set by [motion] instead; leave out the time" in notes
     assert any(note.startswith("mechanism.direction: a swing") for note in notes)

@@ -62,7 +62,7 @@ def test_time_ratio_and_swing_that_are_required_hold_exactly(name: str, value: f
     random, shapes = np.random.default_rng(72), set()
     for branch in elimination_branches(problem):
         assert branch.eliminated == (name,)
-        designs = branch.dimensions(random.random((200, len(branch.free))))
+        designs = branch.designs_at_points(random.random((200, len(branch.free))))
         found = problem.evaluate(designs[np.isfinite(designs).all(axis=1)], [name])[:, 0]
         assert found[np.isfinite(found)] == pytest.approx(value, rel=1e-12)
         shapes |= set((designs[:, 0] < designs[:, 1]).tolist())

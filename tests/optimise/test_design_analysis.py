@@ -106,10 +106,10 @@ def test_columns_of_the_cycle_are_the_names_and_units_of_the_curves(problem: sc.
     analysis = problem.analyse(DESIGN)
     table = analysis.cycle(4)
     curves = cycle_curves(analysis.mechanism, analysis.linkage, table["crank_angle_rad"])
-    assert [*table.columns] == [curve.name + curve.kind.si.suffix for curve in curves]
+    assert [*table.columns] == [curve.name + curve.kind.si_display_unit.suffix for curve in curves]
     assert isinstance(table, pd.DataFrame)
     for curve in curves:
-        np.testing.assert_array_equal(table[curve.name + curve.kind.si.suffix], curve.values)
+        np.testing.assert_array_equal(table[curve.name + curve.kind.si_display_unit.suffix], curve.values)
         if curve.name not in ("slider_jerk", "power"):
             assert curve.kind.metric.suffix.strip("_") in curve.field
 

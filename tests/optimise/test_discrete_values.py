@@ -82,7 +82,7 @@ def test_every_combination_is_judged_once_however_many_at_once(at_once: int, mon
         if rod > crank + offset
         and math.sqrt((rod + crank) ** 2 - offset**2) - math.sqrt((rod - crank) ** 2 - offset**2) >= 90.0
     ]
-    assert found.judged == axes.count == 36
+    assert found.judged == axes.combination_count == 36
     np.testing.assert_allclose(found.dimensions, 1e-3 * np.array(expected), rtol=1e-15)
     assert asked == [(begun, 36) for begun in range(0, 36, at_once)]
 
@@ -182,10 +182,10 @@ def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_b
     axes = Axes.of_problem(part)
     exact = best_of_all_combinations(axes)
     found, seen = best_near_designs(axes, exact.dimensions[:1], 30, 10_000)
-    assert len(seen) == found.judged < axes.count
+    assert len(seen) == found.judged < axes.combination_count
     assert has_judged_neighbours(axes, found.dimensions, seen).all()
     around = designs_meeting_requirements(
-        part, axes.designs_of_numbers(np.unique(axes.neighbour_numbers(found.dimensions)))
+        part, axes.combinations_at_indices(np.unique(axes.indices_of_neighbours(found.dimensions)))
     )
     for values in around.values:
         assert not ((values <= found.values).all(axis=1) & (values < found.values).any(axis=1)).any()
@@ -194,18 +194,20 @@ def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_b
 def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of any size give what one part gives, and no more is held than the best."""
     axes = Axes.of_problem(parse_job(job()))
-    whole = designs_meeting_requirements(axes.part, axes.designs(0, axes.count)).best()
+    whole = designs_meeting_requirements(axes.part, axes.combinations_between(0, axes.combination_count)).nondominated()
     sizes: list[int] = []
     monkeypatch.setattr(combinations, "_BATCH", 100)
     monkeypatch.setattr(combinations, "_HELD", 20)
     found = best_of_all_combinations(axes, lambda done, of: sizes.append(done))
-    assert sizes == list(range(0, axes.count, 100))
-    assert found.judged == axes.count
+    assert sizes == list(range(0, axes.combination_count, 100))
+    assert found.judged == axes.combination_count
     assert len(found.values) <= 120
-    found = found.best()
+    found = found.nondominated()
     assert found.values.tolist() == whole.values.tolist()
     assert found.dimensions.tolist() == whole.dimensions.tolist()
-    assert axes.combination_numbers(axes.designs(0, axes.count)).tolist() == list(range(axes.count))
+    assert axes.indices_of_combinations(axes.combinations_between(0, axes.combination_count)).tolist() == list(
+        range(axes.combination_count)
+    )
 
 
 def test_five_million_combinations_are_judged_one_by_one() -> None:

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.objectives.flow import VOLUMETRIC_EFFICIENCY
-from slidercrank.objectives.formula.expression import Call, Name, linear_unknown
+from slidercrank.objectives.formula.expression import Call, Name, linear_form_of_unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
@@ -82,7 +82,7 @@ def test_bounds_of_quotients_are_those_of_designs_that_turn() -> None:
     for _ in range(60):
         low, span = random.uniform((0.02, 0.05, -0.05), (0.06, 0.2, 0.03)), random.uniform(0.0, (0.05, 0.2, 0.08))
         ends = {name: Interval(a, a + b) for name, a, b in zip(NAMES, low, span, strict=True)}
-        ranges = FormulaBounds(ends, {name: linear_unknown(name) for name in NAMES}, {})
+        ranges = FormulaBounds(ends, {name: linear_form_of_unknown(name) for name in NAMES}, {})
         x = random.uniform(low, low + span, (20_000, 3))
         edges = random.integers(0, 3, x.shape)
         x = np.where(edges == 0, low, np.where(edges == 1, low + span, x))
@@ -92,7 +92,7 @@ def test_bounds_of_quotients_are_those_of_designs_that_turn() -> None:
         for pair in (("rod", "crank"), ("crank", "rod"), ("offset", "rod")):
             above, below = (x[:, NAMES.index(name)] for name in pair)
             values = above / below
-            found = ranges.bounds(Call("/", tuple(map(Name, pair))))
+            found = ranges.bounds_of_formula(Call("/", tuple(map(Name, pair))))
             assert found.lower <= values.min()
             assert values.max() <= found.upper
             size = found.upper - found.lower

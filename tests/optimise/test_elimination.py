@@ -72,7 +72,7 @@ def test_requirements_are_eliminated_exactly_or_listed(names: tuple[str, ...], o
         assert len(branch.free) == max(3 - fixed - len(branch.steps), 0)
         evaluator = Evaluator(wanted, branch)
         u = np.concatenate([own_point(branch), np.random.default_rng(1).random((400, len(branch.free)))])
-        designs = branch.dimensions(u)
+        designs = branch.designs_at_points(u)
         assert designs[0] == pytest.approx(BASE * (1.0, 1.0, branch.sign), rel=1e-12)
         good = evaluator.can_evaluate(u)
         assert good[0]
@@ -98,7 +98,9 @@ def test_the_derivatives_of_eliminated_dimensions_match_differences(
         for column in range(len(branch.free)):
             step = np.zeros_like(u)
             step[0, column] = 1e-4
-            near, far = ((branch.dimensions(u + n * step) - branch.dimensions(u - n * step))[0] for n in (1.0, 2.0))
+            near, far = (
+                (branch.designs_at_points(u + n * step) - branch.designs_at_points(u - n * step))[0] for n in (1.0, 2.0)
+            )
             slope = (8.0 * near - far) / 12e-4
             assert exact[:, column] == pytest.approx(slope, abs=1e-8 * np.abs(slope).max())
 
@@ -133,7 +135,7 @@ def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
     wanted = problem({"peak_torque": "minimise"}, asked, crank=(0.001, 0.2), rod=(0.2, 0.3), offset=(0.0, 0.1))
     branch = elimination_branches(wanted)[0]
     u = np.random.default_rng(5).random((2000, len(branch.free)))
-    designs = branch.dimensions(u)
+    designs = branch.designs_at_points(u)
     r, l, e = designs.T
     with np.errstate(invalid="ignore"):
         turns = l > r + np.abs(e)
@@ -141,7 +143,7 @@ def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
     spurious[turns] = np.abs(CLOSED["stroke"](designs[turns]) - 0.4) > 1e-6
     assert spurious.any()
     assert not Evaluator(wanted, branch).can_evaluate(u)[spurious].any()
-    _, _, violation = Evaluator(wanted, branch).screen(u)
+    _, _, violation = Evaluator(wanted, branch).screen_designs_objectives_violation(u)
     assert np.isinf(violation[spurious]).all()
 
 
@@ -149,7 +151,7 @@ def test_computed_dimensions_outside_their_range_are_violations_relative_to_it()
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, crank=(0.09, 0.098), offset=(0.0, 0.15))
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = np.random.default_rng(6).random((500, evaluator.dimension))
-    designs, _, violation = evaluator.screen(u)
+    designs, _, violation = evaluator.screen_designs_objectives_violation(u)
     for design, size in zip(designs, violation, strict=True):
         if math.isfinite(size) and not np.isnan(design).any() and design[1] > (design[0] + design[2]) / 0.8:
             beyond = max((design[0] - 0.098) / 0.098, (0.09 - design[0]) / 0.098, 0.0)

@@ -58,7 +58,7 @@ def test_screened_designs_are_those_that_are_feasible(wanted: Problem) -> None:
     for branch in elimination_branches(wanted):
         evaluator = Evaluator(wanted, branch)
         u = np.random.default_rng(12).random((3000, evaluator.dimension))
-        designs, values, violation = evaluator.screen(u)
+        designs, values, violation = evaluator.screen_designs_objectives_violation(u)
         good = violation <= FEASIBLE
         assert 10 <= good.sum() < len(u)
         assert np.isfinite(values[good]).all()
@@ -80,8 +80,8 @@ def test_exact_rows_are_objectives_and_relative_violations(wanted: Problem) -> N
     for branch in elimination_branches(wanted):
         evaluator = Evaluator(wanted, branch)
         u = points(evaluator, 300)
-        designs = branch.dimensions(u)
-        goals, limits = evaluator.exact_rows(u)
+        designs = branch.designs_at_points(u)
+        goals, limits = evaluator.objective_and_constraint_rows(u)
         expected = objectives(wanted, designs)
         for column in range(len(wanted.objectives)):
             assert greatest(goals, column) == pytest.approx(expected[:, column], rel=1e-9, abs=1e-12)
@@ -103,7 +103,7 @@ def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
             move[column] = step
             around = [u + n * move for n in (-2, -1, 0, 1, 2)]
             keep = np.all([evaluator.can_evaluate(points) for points in around], axis=0)
-            rows = [evaluator.exact_rows(points[keep]) for points in around]
+            rows = [evaluator.objective_and_constraint_rows(points[keep]) for points in around]
             for which in (0, 1):
                 values = [np.where(np.isfinite(row[which].values), row[which].values, np.nan) for row in rows]
                 slope = (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
@@ -122,8 +122,8 @@ def test_a_footprint_is_maximised_and_bounded_below_through_its_greatest_form() 
     wanted = problem({"footprint": "maximise"}, {"footprint": (0.05, None)}, crank=(0.02, 0.05), offset=(0.06, 0.15))
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 50)
-    area = value(wanted, "footprint", evaluator.branch.dimensions(u))
-    goals, limits = evaluator.exact_rows(u)
+    area = value(wanted, "footprint", evaluator.branch.designs_at_points(u))
+    goals, limits = evaluator.objective_and_constraint_rows(u)
     assert greatest(goals, 0) == pytest.approx(-area, rel=1e-12)
     assert greatest(limits, [c.quantity for c in evaluator.constraints].index("footprint")) == pytest.approx(
         (0.05 - area) / 0.05, rel=1e-12, abs=1e-12
@@ -134,7 +134,7 @@ def test_ties_of_a_peak_are_rows_of_their_own() -> None:
     """Two equal forces half a turn apart, without masses: the peaks of the two strokes tie without offset."""
     pushing = Mechanism(loads=(StrokeForce(outward=-100.0, inward=100.0),))
     wanted = problem({"peak_torque": "minimise"}, offset=0.0, mechanism=pushing)
-    goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact_rows(np.array([[0.5, 0.3]]))
+    goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).objective_and_constraint_rows(np.array([[0.5, 0.3]]))
     values = np.sort(goals.values[0])[::-1]
     assert values[0] == pytest.approx(values[1], rel=1e-12)
 
@@ -147,7 +147,7 @@ def test_an_infinite_quantity_makes_rows_without_slope() -> None:
             evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
             u = np.full((1, 2), 0.5)
             u[0, evaluator.branch.free.index("offset")] = 0.0
-            _, limits = evaluator.exact_rows(u)
+            _, limits = evaluator.objective_and_constraint_rows(u)
             owner = [c.quantity for c in evaluator.constraints].index("rod_to_offset")
             assert greatest(limits, owner)[0] == expected
             assert np.isfinite(limits.gradients).all()
@@ -162,7 +162,7 @@ def test_what_is_not_a_number_meets_no_limit_and_is_no_optimum(bounds: Bounds, s
     wanted = replace(wanted, mechanism=machine)
     (evaluator, *_) = (Evaluator(wanted, branch) for branch in elimination_branches(wanted))
     u = points(evaluator, 20)
-    goals, limits = evaluator.exact_rows(u)
+    goals, limits = evaluator.objective_and_constraint_rows(u)
     for rows, owner in ((goals, 0), (limits, [c.quantity for c in evaluator.constraints].index("mean_torque"))):
         assert (greatest(rows, owner) == np.inf).all()
 
@@ -171,7 +171,7 @@ def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
     """The transmission angle has a kink at zero offset: along either branch it falls with |offset|."""
     for offset in ((0.0, 0.1), (-0.1, 0.0)):
         wanted = problem({"transmission_angle": "maximise"}, crank=0.1, rod=0.3, offset=offset)
-        goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact_rows(np.zeros((1, 1)))
+        goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).objective_and_constraint_rows(np.zeros((1, 1)))
         # d mu / d a = -1 / sqrt(l^2 - r^2) for a range of 0.1 m; the objective is -mu.
         assert goals.gradients[0, 0, 0] == pytest.approx(0.1 / math.sqrt(0.3**2 - 0.1**2), rel=1e-12)
 
@@ -203,7 +203,7 @@ def test_a_band_lets_in_what_violates_by_less() -> None:
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     assert evaluator.loose
     u = points(evaluator, 4000)
-    designs, values, violation = evaluator.screen(u, band=0.1)
+    designs, values, violation = evaluator.screen_designs_objectives_violation(u, band=0.1)
     good = violation <= 0.1
     assert good.sum() >= 10
     assert np.isfinite(values[good]).all()
@@ -217,9 +217,9 @@ def test_a_bound_of_zero_is_absolute() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"mean_torque": (None, 0.0)})
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 20)
-    _, limits = evaluator.exact_rows(u)
+    _, limits = evaluator.objective_and_constraint_rows(u)
     owner = [c.quantity for c in evaluator.constraints].index("mean_torque")
-    mean = value(wanted, "mean_torque", evaluator.branch.dimensions(u))
+    mean = value(wanted, "mean_torque", evaluator.branch.designs_at_points(u))
     assert greatest(limits, owner) == pytest.approx(mean, rel=1e-12)
 
 
@@ -228,7 +228,7 @@ def test_loads_that_cannot_be_screened_are_evaluated_exactly() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, mechanism=Mechanism(speed=3.0, loads=(table,)))
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 100)
-    designs, values, violation = evaluator.screen(u)
+    designs, values, violation = evaluator.screen_designs_objectives_violation(u)
     good = violation <= FEASIBLE
     assert values[good, 0] == pytest.approx(value(wanted, "peak_torque", designs[good]), rel=1e-12)
 
@@ -237,8 +237,8 @@ def test_evaluations_are_counted() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2})
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 30)
-    evaluator.screen(u)
-    evaluator.exact_rows(u)
+    evaluator.screen_designs_objectives_violation(u)
+    evaluator.objective_and_constraint_rows(u)
     assert evaluator.evaluations == 2 * len(u)
 
 

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, GainBounds, choose_designs, hypervolume, ideal_and_range
+from slidercrank.optimise.front.hypervolume import (
+    REFERENCE,
+    GainBounds,
+    choose_designs_by_hypervolume,
+    hypervolume,
+    ideal_and_range,
+)
 
 UNIT = (np.zeros(3), np.ones(3))
 
@@ -38,7 +44,7 @@ def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:
             hypervolume(values[[*picked, i]], ideal, span) if i not in picked else -1.0 for i in range(len(values))
         ]
         picked.append(int(np.argmax(gains)))
-    assert choose_designs(values, 6, always=(0,)).tolist() == sorted(picked)
+    assert choose_designs_by_hypervolume(values, 6, always=(0,)).tolist() == sorted(picked)
 
 
 @pytest.mark.parametrize("objectives", [2, 3, 4, 6])

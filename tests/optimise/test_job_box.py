@@ -41,11 +41,11 @@ def test_no_design_within_the_ranges_lies_outside_the_bounds(ends: list[float], 
         np.array([(x.lower, x.upper)[n >> shift & 1] for n in range(8)]) for shift, x in enumerate((crank, rod, offset))
     )
     turning = l > (r + a) * (1.0 + 1e-9)
-    assert box.turns or not turning.any()
+    assert box.may_rotate_fully or not turning.any()
     assume(turning.any())
     for name, formula in QUANTITIES.items():
         values = formula(r[turning], l[turning], a[turning])
-        least, greatest = box.possible(quantity(name))
+        least, greatest = box.bounds_on_quantity(quantity(name))
         assert least * (1.0 - 1e-9) <= values.min()
         assert values.max() <= greatest * (1.0 + 1e-9)
 
@@ -70,7 +70,7 @@ def test_the_bounds_are_approached_by_designs_within_the_ranges(ends: tuple[floa
     turning = l > (r + a) * (1.0 + 5e-8)
     for name in ("stroke", "time_ratio", "transmission_angle"):
         values = QUANTITIES[name](r[turning], l[turning], a[turning])
-        least, greatest = box.possible(quantity(name))
+        least, greatest = box.bounds_on_quantity(quantity(name))
         assert values.min() == pytest.approx(least, rel=5e-3, abs=2e-3)
         assert values.max() == pytest.approx(greatest, rel=2e-2)
 

@@ -39,7 +39,7 @@ def test_without_a_drive_the_mechanism_has_none() -> None:
         ),
         (
             {"rated_torque": "10 N m", "rated_speed": "1440 rpm", "no_load_speed": "1500 rpm"},
-            LinearMotor.through(torque=10.0, speed=24.0 * TURN, no_load_speed=25.0 * TURN),
+            LinearMotor.from_rated_point(torque=10.0, speed=24.0 * TURN, no_load_speed=25.0 * TURN),
         ),
         (
             {"speeds": ["0 rpm", "60 rpm", "120 rpm"], "torques": ["5 N m", "7 N m", "-1 N m"]},

@@ -50,8 +50,8 @@ def test_a_formula_is_a_quantity_of_the_problem_with_kind_column_and_title() -> 
     ratio = known["peak_torque_outward / peak_torque_inward"]
     clearance, product = known["offset - crank"], known["peak_torque / crank**2"]
     assert (clearance.name, clearance.field, clearance.unit.symbol) == ("offset - crank", "offset_minus_crank_mm", "mm")
-    assert (ratio.field, ratio.kind.plain) == ("peak_torque_outward_per_peak_torque_inward", "ratio")
-    assert (product.unit.symbol, product.kind.plain) == ("N/m", "stiffness")
+    assert (ratio.field, ratio.kind.name_without_article) == ("peak_torque_outward_per_peak_torque_inward", "ratio")
+    assert (product.unit.symbol, product.kind.name_without_article) == ("N/m", "stiffness")
     np.testing.assert_allclose(values(problem, "offset - crank"), [-0.02, 0.01], rtol=1e-13)
     sides = problem.evaluate(DESIGNS, ["peak_torque_outward", "peak_torque_inward"])
     np.testing.assert_allclose(values(problem, ratio.name), sides[:, 0] / sides[:, 1], rtol=1e-15)

@@ -16,7 +16,7 @@ from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.objectives.force_transmission import SELF_LOCKING_MARGIN
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, parse_job
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 from slidercrank.optimise.job.problem_of_job import problem_of
 from slidercrank.optimise.job.sections_table import EXAMPLE
 from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
@@ -143,7 +143,7 @@ def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
     evaluator = Evaluator(replace(problem, objectives=wanted, constraints=()), elimination_branches(problem)[0])
     evaluator.constraints = ()
     u = np.random.default_rng(3).random((400, evaluator.dimension))
-    dimensions, objectives, violation = evaluator.screen(u)
+    dimensions, objectives, violation = evaluator.screen_designs_objectives_violation(u)
     turns = np.isfinite(evaluator._geometry_violation(dimensions))
     margin = np.full(len(u), np.nan)
     margin[turns] = QUANTITIES["self_locking_margin"].evaluate(problem.mechanism, dimensions[turns]).values
@@ -154,7 +154,7 @@ def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
     drives = turns & (margin > 0.0)
     assert drives.sum() > 20
     assert np.all(np.isfinite(objectives[drives & (violation <= 0.0)]))
-    goals, _ = evaluator.exact_rows(u[locks])
+    goals, _ = evaluator.objective_and_constraint_rows(u[locks])
     assert np.all(goals.values.max(axis=1) == np.inf)
     assert np.all(goals.gradients == 0.0)
 
@@ -186,13 +186,15 @@ def test_a_pin_without_a_radius_rubs_at_half_its_diameter_in_sections_and_follow
 def test_a_radius_that_does_not_follow_its_pin_is_told() -> None:
     rubs = {"crank_pin": {"radius": "6 mm", "coefficient": 0.1}, "slider_pin": {"radius": "8 mm", "coefficient": 0.1}}
     tables = FEEDER | SIZED | {"friction": rubs}
-    (note,) = [note for note in notes_of(tables) if note.startswith("friction")]
+    (note,) = [note for note in job_notes(tables) if note.startswith("friction")]
     assert note == (
         "friction.slider_pin.radius: stays 8 mm, while sections.pins.slider_pin is a diameter of 10 mm; leave the "
         "radius out, and it is half of that"
     )
     varies = FEEDER["variables"] | {"sections": {"pins": {"crank_pin": ["10 mm", "30 mm"]}}}
-    told = [note for note in notes_of(tables | {"variables": varies}) if "while sections.pins.crank_pin varies" in note]
+    told = [
+        note for note in job_notes(tables | {"variables": varies}) if "while sections.pins.crank_pin varies" in note
+    ]
     assert len(told) == 1
     with pytest.raises(JobError, match=r"friction\.crank_pin\.radius: is missing, but required without \[sections\]"):
         job({"crank_pin": {"coefficient": 0.1}})

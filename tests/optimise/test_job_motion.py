@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError, JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.stroke_warnings import stroke_warnings
 from slidercrank.optimise.solve import solve
@@ -213,7 +213,7 @@ def test_tables_of_a_full_turn_are_told_to_say_nothing_of_a_swing() -> None:
     loose = {"joint": "crank pin", "radial_clearance": "0.1 mm", "journal_radius": "10 mm"}
     given = changed(drive={"motor": {"torque": "10 N m"}}, clearance=loose)
     told = "only applies to a rotating crank and is ignored for a swing; leave it out"
-    assert [note for note in notes_of(given) if "ignored for a swing" in note] == [
+    assert [note for note in job_notes(given) if "ignored for a swing" in note] == [
         f"drive: {told}",
         f"clearance: {told}",
     ]
@@ -224,8 +224,8 @@ def test_exponents_of_a_liquid_are_told_to_have_no_use() -> None:
     turning = changed(mechanism={"speed": "60 rpm"}, objectives={"peak_torque": "minimise"}, constraints={})
     turning = {key: value for key, value in turning.items() if key != "motion"}
     told = "load #1: a liquid is not compressed, so it has no expansion_exponent; leave it out"
-    assert notes_of(turning | {"load": [pump | {"expansion_exponent": 1.2}]}) == [told]
-    assert notes_of(turning | {"load": [pump]}) == []
+    assert job_notes(turning | {"load": [pump | {"expansion_exponent": 1.2}]}) == [told]
+    assert job_notes(turning | {"load": [pump]}) == []
 
 
 def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothing() -> None:
@@ -235,8 +235,8 @@ def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothin
     values = [parse_job(job).evaluate(designs, names) for job in (changed(), given)]
     assert np.isfinite(values[0]).all()
     assert np.array_equal(values[0], values[1])
-    assert not any("speed" in note for note in notes_of(changed()))
-    assert "mechanism.speed: a swing is set by [motion] instead" in notes_of(given)[-1]
+    assert not any("speed" in note for note in job_notes(changed()))
+    assert "mechanism.speed: a swing is set by [motion] instead" in job_notes(given)[-1]
     job = changed()
     del job["motion"]
     with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required"):

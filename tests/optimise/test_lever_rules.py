@@ -57,7 +57,7 @@ def test_lengths_that_are_required_hold_exactly(names: tuple[str, ...], variable
         evaluator, u = Evaluator(problem, branch), random.random((400, len(branch.free)))
         u = u[evaluator.can_evaluate(u)]
         if len(u):
-            designs = branch.dimensions(u)
+            designs = branch.designs_at_points(u)
             found = problem.evaluate(designs, list(names))
             by_name = {item.quantity: item.lower for item in problem.constraints}
             assert found == pytest.approx(np.tile([by_name[name] for name in names], (len(u), 1)), rel=1e-9)
@@ -67,7 +67,7 @@ def test_lengths_that_are_required_hold_exactly(names: tuple[str, ...], variable
                 ahead, behind = moved.copy(), moved.copy()
                 ahead[:, column] += step
                 behind[:, column] -= step
-                slope = (branch.dimensions(ahead) - branch.dimensions(behind)) / (2.0 * step)
+                slope = (branch.designs_at_points(ahead) - branch.designs_at_points(behind)) / (2.0 * step)
                 exact = branch.jacobian(moved)[:, :, column]
                 regular = np.isfinite(slope).all(axis=1) & (np.abs(slope).max(axis=1) < 10.0)
                 assert exact[regular] == pytest.approx(slope[regular], rel=1e-4, abs=1e-6)
@@ -85,7 +85,7 @@ def test_a_front_of_exact_lengths_has_them_and_is_as_good_as_without_elimination
     assert found[:, :2] == pytest.approx(np.tile([0.65, 1.06], (len(front), 1)), rel=1e-9)
     random = np.random.default_rng(6)
     branches = elimination_branches(problem)
-    designs = np.concatenate([branch.dimensions(random.random((2000, len(branch.free)))) for branch in branches])
+    designs = np.concatenate([branch.designs_at_points(random.random((2000, len(branch.free)))) for branch in branches])
     values = problem.evaluate(designs, [*names, "lever_transmission_angle", "peak_cylinder_force"])
     held = np.abs(values[:, :2] - [0.65, 1.06]).max(axis=1) < 1e-9
     held &= (values[:, 2] >= np.radians(10.0)) & (designs[:, 0] <= 0.6) & (designs[:, 1] <= 1.4)

@@ -68,7 +68,7 @@ def test_linear_rules_leave_one_unknown_fewer_each_and_hold_to_rounding(rules: d
     for branch in elimination_branches(problem):
         assert len(branch.free) == free
         assert set(branch.eliminated) == {item.quantity for item in equalities}
-        found = branch.dimensions(np.random.default_rng(1).random((50, free)))
+        found = branch.designs_at_points(np.random.default_rng(1).random((50, free)))
         found = found[(found[:, 1] > found[:, 0] + np.abs(found[:, 2])) & (found[:, 0] > 0.0)]
         for item in equalities if len(found) else ():
             values = problem.quantity(item.quantity).evaluate(problem.mechanism, found).values
@@ -83,7 +83,7 @@ def test_a_varying_number_may_stand_in_a_linear_rule() -> None:
     job["constraints"]["crank + rod"] = {"equals": "load.3.free_position"}
     branch = elimination_branches(parse_job(job))[0]
     assert len(branch.free) == 3
-    found = branch.dimensions(np.random.default_rng(1).random((50, 3)))
+    found = branch.designs_at_points(np.random.default_rng(1).random((50, 3)))
     np.testing.assert_allclose(found[:, 0] + found[:, 1], found[:, 3], rtol=1e-14)
 
 

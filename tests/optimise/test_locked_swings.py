@@ -53,7 +53,9 @@ def sampled(given: Problem, count: int) -> tuple[Array, Mask]:
     found = []
     for branch in elimination_branches(given):
         evaluator = Evaluator(given, branch)
-        dimensions, _, violation = evaluator.screen(np.random.default_rng(5).random((count, evaluator.dimension)))
+        dimensions, _, violation = evaluator.screen_designs_objectives_violation(
+            np.random.default_rng(5).random((count, evaluator.dimension))
+        )
         found.append(np.column_stack([dimensions, violation <= FEASIBLE]))
     every = np.concatenate(found)
     assert given.motion is not None

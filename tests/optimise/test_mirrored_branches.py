@@ -113,15 +113,15 @@ def finished(values: list[list[float]], *, residual: list[float] | None = None) 
     part = Polished(
         np.full((n, 3), 0.5), given, np.zeros(n), still, nothing, object_array(np.zeros((0, 3)) for _ in range(n))
     )
-    found.add(0, part)
+    found.add_feasible(0, part)
     return found
 
 
 def test_a_design_that_is_best_by_rounding_does_not_stay_beside_one_that_is_better_elsewhere() -> None:
     """722 W and 1444 W at the same time ratio."""
     values = [[0.0, 0.722, 0.3], [-1e-11, 1.444, 0.3 - 1e-11], [1.0, 0.1, 0.0], [0.5, 0.4, 1.3]]
-    assert finished(values).best().tolist() == [0, 2, 3]
-    assert finished(values, residual=[1e-3, 0.0, 0.0, 0.0]).best().tolist() == [0, 2, 3]
+    assert finished(values).nondominated_rows().tolist() == [0, 2, 3]
+    assert finished(values, residual=[1e-3, 0.0, 0.0, 0.0]).nondominated_rows().tolist() == [0, 2, 3]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -131,7 +131,7 @@ def test_no_finished_design_is_as_good_as_another_one_and_better(seed: int) -> N
     values = random.random((60, 3))
     images = values + random.choice([0.0, 1e-11, -1e-11, 3e-10, 0.4], values.shape)
     union = np.concatenate([values, images, images + 1e-12 * random.standard_normal(values.shape)])
-    kept = union[finished(union.tolist()).best()]
+    kept = union[finished(union.tolist()).nondominated_rows()]
     near = 1e-9 * np.ptp(kept, axis=0)
     for row in kept:
         assert ((kept <= row + near).all(axis=1)).sum() == 1

@@ -80,11 +80,11 @@ def test_what_has_no_picture_says_so(front: sc.ParetoFront) -> None:
 
 
 def test_picture_of_one_objective_and_of_equal_values_is_drawn(front: sc.ParetoFront) -> None:
-    from slidercrank.optimise.front.front_picture import figure, svg
+    from slidercrank.optimise.front.front_picture import scatter_figure, scatter_svg
 
     for values in (np.ones((3, 1)), np.ones((3, 2)), np.ones((1, 4))):
-        ElementTree.fromstring(svg(values, ["a & b", "c", "d", "e"]))
-        assert isinstance(figure(values, ["a", "b", "c", "d"], "title"), Figure)
+        ElementTree.fromstring(scatter_svg(values, ["a & b", "c", "d", "e"]))
+        assert isinstance(scatter_figure(values, ["a", "b", "c", "d"], "title"), Figure)
 
 
 def test_a_notebook_shows_the_figures_without_pyplot(front: sc.ParetoFront) -> None:

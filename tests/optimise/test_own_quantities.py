@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.objectives.kinds import DisplayUnit, kind_in
+from slidercrank.objectives.kinds import DisplayUnit, kind_displayed_in
 from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
@@ -92,7 +92,7 @@ def test_function_in_python_needs_no_job() -> None:
         name="mine",
         function=lambda d: d.peaks(lambda angle: magnitude(d.acceleration(angle))),
         title="mine",
-        kind=kind_in("m/s^2", 1.0),
+        kind=kind_displayed_in("m/s^2", 1.0),
     )
     base = parse_job(job(objectives={"peak_slider_acceleration": "minimise"}))
     wanted = (Objective(quantity="mine", sense="minimise"),)
@@ -187,7 +187,7 @@ def test_reading_a_job_runs_nothing(tmp_path: Path) -> None:
 
 
 def test_installed_packages_offer_quantities_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    offered = OwnQuantity(name="mine", function=lambda d: d.crank, title="the crank", kind=kind_in("mm", 1e3))
+    offered = OwnQuantity(name="mine", function=lambda d: d.crank, title="the crank", kind=kind_displayed_in("mm", 1e3))
     entry = importlib.metadata.EntryPoint("mine", "ourcompany:MINE", own_module.GROUP)
     monkeypatch.setattr(importlib.metadata, "entry_points", lambda group: [entry] if group == own_module.GROUP else [])
     monkeypatch.setattr(importlib.metadata.EntryPoint, "load", lambda _: offered)
@@ -209,7 +209,7 @@ ROUNDED = OwnQuantity(
     name="mine",
     function=lambda d: np.round(1e3 * d.rod.real),
     title="mine",
-    kind=kind_in("mm", 1.0),
+    kind=kind_displayed_in("mm", 1.0),
     gradient="none",
 )
 

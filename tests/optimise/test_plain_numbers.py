@@ -15,7 +15,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputWarning, JobError
 from slidercrank.optimise.job import parse_job, value_types
-from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.job_notes import job_notes
 
 PRESS = {
     "name": "Press",
@@ -104,7 +104,7 @@ def put(path: str, value: Any) -> dict[str, Any]:
 def test_a_number_without_a_unit_of_a_size_that_no_machine_has_is_warned_of(path: str, value: Any, said: str) -> None:
     (warning,) = parse_job(put(path, value), require_feasible=False).warnings
     assert warning.startswith(said)
-    assert not any("without a unit" in note for note in notes_of(put(path, value)))
+    assert not any("without a unit" in note for note in job_notes(put(path, value)))
 
 
 def test_values_with_units_and_believed_numbers_in_si_never_warn() -> None:

@@ -37,7 +37,7 @@ class Analytic:
     def can_evaluate(self, u: Array) -> NDArray[np.bool_]:
         return np.asarray(self.inside(*u.T))
 
-    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
+    def objective_and_constraint_rows(self, u: Array) -> tuple[Rows, Rows]:
         assert self.can_evaluate(u).all()
         return self._rows(self.goals, u), self._rows(self.limits, u)
 
@@ -161,7 +161,7 @@ def test_only_the_chosen_objective_is_improved() -> None:
 
 def test_no_objective_gets_worse_from_a_feasible_start() -> None:
     """By more than a thousandth of what the others gain: so much more does the merit weigh a loss."""
-    _, limits = ROUGH.exact_rows(STARTS)
+    _, limits = ROUGH.objective_and_constraint_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) <= 0.0]
     assert len(start) >= 10
     before = polish_designs(ROUGH, start, np.ones(3), iterations=0)
@@ -175,13 +175,13 @@ def test_no_objective_gets_worse_from_a_feasible_start() -> None:
 
 @pytest.mark.parametrize("iterations", [1, 2, 3, 5, 8])
 def test_a_feasible_design_is_feasible_whenever_the_polish_ends(iterations: int) -> None:
-    _, limits = ROUGH.exact_rows(STARTS)
+    _, limits = ROUGH.objective_and_constraint_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) <= 0.0]
     assert polish_designs(ROUGH, start, np.ones(3), iterations=iterations).violation.max() <= 1e-12
 
 
 def test_an_infeasible_start_is_moved_onto_curved_constraints() -> None:
-    _, limits = ROUGH.exact_rows(STARTS)
+    _, limits = ROUGH.objective_and_constraint_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) > 1e-3]
     assert len(start) >= 10
     assert (polish_designs(ROUGH, start, np.ones(3)).violation <= 1e-12).all()

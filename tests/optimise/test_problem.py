@@ -16,7 +16,7 @@ from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
 from slidercrank.objectives.peak_torque import RMS_TORQUE
-from slidercrank.optimise.front.choose_design import closeness
+from slidercrank.optimise.front.choose_design import topsis_closeness
 from slidercrank.optimise.problem.problem import Settings, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve
@@ -111,7 +111,7 @@ def test_words_of_other_parts_are_checked_too() -> None:
     """A word that is none of a `Literal` would be taken for the last of its words."""
     front = np.array([[0.0, 1.0], [1.0, 0.0]])
     with pytest.raises(InputError, match="normalisation must be 'range' or 'vector'; got 'Range'"):
-        closeness(front, [1.0, 1.0], normalisation="Range")  # type: ignore[arg-type]
+        topsis_closeness(front, [1.0, 1.0], normalisation="Range")  # type: ignore[arg-type]
     target = TargetMotion(crank_angles=(0.0, 1.0, 2.0), positions=(0.1, 0.2, 0.3))
     with pytest.raises(InputError, match="measure must be 'greatest' or 'rms'; got 'RMS'"):
         MotionDeviation(name="x", title="x", kind=LENGTH, target=target, measure="RMS")  # type: ignore[arg-type]

@@ -55,7 +55,7 @@ def check_formulas(count: int, seed: int) -> tuple[int, float, float]:
         if not names:
             continue
         known = formulas()
-        of = known.quantity(text, "here")
+        of = known.quantity_of_text(text, "here")
         found = of.evaluate(MACHINE, x, gradients=True)
         assert found.gradients is not None
         parts = dict(zip(("crank", "rod", "offset", "mechanism.slider.mass"), range(4), strict=True))
@@ -64,7 +64,7 @@ def check_formulas(count: int, seed: int) -> tuple[int, float, float]:
             if name in parts:
                 leaves[name] = x[:, parts[name]], np.tile(np.eye(4)[parts[name]], (len(x), 1))
             else:
-                part = known.quantity(name, "here").evaluate(MACHINE, x, gradients=True)
+                part = known.quantity_of_text(name, "here").evaluate(MACHINE, x, gradients=True)
                 leaves[name] = part.values, part.gradients
         for row in range(len(x)):
             for column in range(4):
@@ -140,13 +140,13 @@ def check_mutations(count: int, seed: int) -> tuple[int, float]:
     random = np.random.default_rng(seed)
     taken, longest = 0, 0.0
     known = formulas()
-    known.quantity("1 lbf * crank", "here")  # the units library is read once
+    known.quantity_of_text("1 lbf * crank", "here")  # the units library is read once
     for place in range(count):
         known = formulas() if place % 1000 == 0 else known
         text = mutated(random, random_formula(random, depth=2)[0])
         begin = time.process_time()
         try:
-            assert known.quantity(text, "here").name
+            assert known.quantity_of_text(text, "here").name
             taken += 1
         except JobError as error:
             message = str(error)
@@ -157,7 +157,7 @@ def check_mutations(count: int, seed: int) -> tuple[int, float]:
         if taken_time > 0.5 * LONGEST:  # the collector of garbage may have come in between
             begin = time.process_time()
             with contextlib.suppress(JobError):
-                formulas().quantity(text, "here")
+                formulas().quantity_of_text(text, "here")
             taken_time = min(taken_time, time.process_time() - begin)
         longest = max(longest, taken_time)
     return taken, longest
@@ -177,7 +177,7 @@ def test_pieces_of_random_formulas_are_the_greatest_and_the_least_of_them() -> N
         text, _, names = random_formula(random)
         if not names:
             continue
-        of = formulas().quantity(text, "here")
+        of = formulas().quantity_of_text(text, "here")
         found, values = of.pieces(MACHINE, x), of.evaluate(MACHINE, x, gradients=True)
         assert values.gradients is not None
         np.testing.assert_allclose(found.values.max(axis=1), values.values, rtol=1e-12, atol=1e-12)

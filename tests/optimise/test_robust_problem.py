@@ -92,8 +92,8 @@ def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, ord
 def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requirements() -> None:
     cost = robust_cost(front("worst case", 2))
     assert cost is not None
-    assert cost.cost(0, maximised=True) > 0.0
-    assert cost.cost(1, maximised=False) > 0.0
+    assert cost.cost_of_robustness(0, maximised=True) > 0.0
+    assert cost.cost_of_robustness(1, maximised=False) > 0.0
     assert cost.keeps < len(cost.nominal)
     assert (cost.toleranced[:, 0] < cost.nominal[:, 0]).all()
     assert (cost.toleranced[:, 1] > cost.nominal[:, 1]).all()
@@ -108,7 +108,7 @@ def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> No
     one, other = (Evaluator(problem, elimination_branches(problem)[0]) for problem in (exact, within))
     points = np.random.default_rng(0).random((2000, one.dimension))
     points = points[one.can_evaluate(points)]
-    (plainly, _), (robustly, _) = one.exact_rows(points), other.exact_rows(points)
+    (plainly, _), (robustly, _) = one.objective_and_constraint_rows(points), other.objective_and_constraint_rows(points)
     assert np.array_equal(plainly.values, robustly.values)
     assert np.array_equal(plainly.gradients, robustly.gradients)
     # Archives are not the same to the bit: a robust peak is not screened. So polish may begin at another sample.

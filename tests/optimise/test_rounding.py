@@ -240,7 +240,7 @@ def require_misses(front: ParetoFront, found: Rounded, allow: dict[str, float]) 
                 continue
             assert miss.amount == pytest.approx(max(below, above) * of.unit.factor, rel=1e-6)
             assert miss.side == ("below" if below > above else "above")
-            assert (miss.kind, miss.unit) == (of.kind.plain, of.unit.symbol)
+            assert (miss.kind, miss.unit) == (of.kind.name_without_article, of.unit.symbol)
             assert miss.allowed == pytest.approx(allow.get(constraint.quantity, 0.0) * of.unit.factor)
             if found.is_met:
                 assert miss.amount <= miss.allowed * (1.0 + 1e-6) + 2e-9 * abs(value) * of.unit.factor

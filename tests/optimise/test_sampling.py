@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.search.sampling import BOUNDARY_SHARE, draw_rows, first_samples, random_generator, sample_near
+from slidercrank.optimise.search.sampling import (
+    BOUNDARY_SHARE,
+    draw_rows,
+    first_samples,
+    random_generator,
+    sample_near_parents,
+)
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])
@@ -56,7 +62,9 @@ def test_seed_and_stream_decide_the_samples() -> None:
 
 def test_children_stay_in_the_box_and_mostly_on_their_parents_bounds() -> None:
     parents = np.array([[0.0, 0.5], [1.0, 0.3], [0.4, 1.0]])
-    children = sample_near(parents, np.array([[0.0, 1.0], [0.5, 0.4], [1.0, 0.0]]), 3000, 0.05, random_generator(1))
+    children = sample_near_parents(
+        parents, np.array([[0.0, 1.0], [0.5, 0.4], [1.0, 0.0]]), 3000, 0.05, random_generator(1)
+    )
     assert children.shape == (3000, 2)
     assert children.min() >= 0.0
     assert children.max() <= 1.0
@@ -68,12 +76,12 @@ def test_sparse_parts_of_the_front_get_more_children() -> None:
     """Nine parents close together and one far away: it gets more than its tenth."""
     line = np.append(np.linspace(0.0, 0.1, 9), 1.0)
     parents = np.stack([0.2 + 0.5 * line, np.full(10, 0.5)], axis=1)
-    children = sample_near(parents, np.stack([line, 1.0 - line], axis=1), 2000, 0.001, random_generator(2))
+    children = sample_near_parents(parents, np.stack([line, 1.0 - line], axis=1), 2000, 0.001, random_generator(2))
     assert np.mean(children[:, 0] > 0.6) >= 0.5
 
 
 def test_a_single_parent_has_children_too() -> None:
-    children = sample_near(np.array([[0.5, 0.5]]), np.array([[1.0, 2.0]]), 50, 0.1, random_generator(3))
+    children = sample_near_parents(np.array([[0.5, 0.5]]), np.array([[1.0, 2.0]]), 50, 0.1, random_generator(3))
     assert children.shape == (50, 2)
     assert children.std() > 0.01
 

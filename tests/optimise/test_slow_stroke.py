@@ -67,7 +67,7 @@ def test_every_design_of_the_sheets_that_are_left_has_the_slow_stroke(wanted: st
         )
     )
     (sheet,) = elimination_branches(problem)
-    designs = sheet.dimensions(first_samples(128, len(sheet.free), 1, 0))
+    designs = sheet.designs_at_points(first_samples(128, len(sheet.free), 1, 0))
     designs = designs[(designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (np.abs(designs[:, 2]) > 1e-3)]
     assert len(designs) > 30
     assert set(slow_by_positions(designs, branch, speed)) == {wanted}

@@ -17,7 +17,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.front.front import Columns, ParetoFront
-from slidercrank.optimise.front.hypervolume import ReportProgress, choose_designs
+from slidercrank.optimise.front.hypervolume import ReportProgress, choose_designs_by_hypervolume
 from slidercrank.optimise.front.progress import REPEATING, Progress
 from slidercrank.optimise.methods.auto import partial_front
 from slidercrank.optimise.problem.problem import Problem
@@ -173,8 +173,8 @@ def saying(heard: list[str], stage: str) -> Callable[[], bool]:
 def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
     values = np.random.default_rng(1).random((200, 3))
     heard: list[tuple[int, int]] = []
-    chosen = choose_designs(values, 30, report=lambda done, of: heard.append((done, of)))
-    assert np.array_equal(chosen, choose_designs(values, 30))
+    chosen = choose_designs_by_hypervolume(values, 30, report=lambda done, of: heard.append((done, of)))
+    assert np.array_equal(chosen, choose_designs_by_hypervolume(values, 30))
     assert len(heard) >= 30
     assert heard == sorted(heard)
     assert heard[-1] == (29, 30)

@@ -75,9 +75,9 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
             for sheet in elimination_branches(own):
                 assert sheet.eliminated == (name,)
                 targets.add(sheet.steps[0].target)
-                again = sheet.dimensions(sheet.coordinates(design[None]))
+                again = sheet.designs_at_points(sheet.points_of_designs(design[None]))
                 hits += bool(np.allclose(again, design, rtol=1e-7, atol=1e-9))
-                tried = sheet.dimensions(random.random((60, len(sheet.free))))
+                tried = sheet.designs_at_points(random.random((60, len(sheet.free))))
                 tried = tried[np.isfinite(tried).all(axis=1)]
                 tried = tried[swings_without_dead_point(own.mechanism, own.motion or swing, tried)]
                 ends = swing_ends(own.mechanism, own.motion or swing, tried)

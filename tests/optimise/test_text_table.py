@@ -73,7 +73,9 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
         table = read_table(decode_file_text(content, "the file"), "the file")
         assert len(table.heads) == shape[1], (dialect, table.heads)
         assert table.heads[1] == "Weg_µm", dialect
-        np.testing.assert_array_equal(np.column_stack(table.numbers(range(shape[1]))), numbers, err_msg=str(dialect))
+        np.testing.assert_array_equal(
+            np.column_stack(table.number_columns(range(shape[1]))), numbers, err_msg=str(dialect)
+        )
 
 
 @pytest.mark.parametrize(
@@ -105,7 +107,7 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
 )
 def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbers: list[float], said: str) -> None:
     table = read_table(text, "the file")
-    assert [float(column[0]) for column in table.numbers([0, 1])] == numbers
+    assert [float(column[0]) for column in table.number_columns([0, 1])] == numbers
     assert table.summary_text([0, 1]).endswith(said)
     assert f"first {numbers[0]:.6g}, {numbers[1]:.6g};" in table.summary_text([0, 1])
 
@@ -130,7 +132,7 @@ def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbe
 )
 def test_a_number_that_could_be_another_one_is_refused_with_row_and_remedy(text: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        read_table(text, "the file").numbers([0, 1])
+        read_table(text, "the file").number_columns([0, 1])
 
 
 @pytest.mark.parametrize(
@@ -154,7 +156,7 @@ def test_a_number_that_could_be_another_one_is_refused_with_row_and_remedy(text:
 def test_names_of_columns_may_be_commented_and_have_blanks_between_blanks(text: str) -> None:
     table = read_table(text, "the file")
     assert table.heads == ("angle (deg)", "force (N)")
-    assert [column.tolist() for column in table.numbers([0, 1])] == [[0.0, 90.0], [1.0, 2.0]]
+    assert [column.tolist() for column in table.number_columns([0, 1])] == [[0.0, 90.0], [1.0, 2.0]]
 
 
 def test_one_row_and_a_negative_zero_are_reported_as_people_write_them() -> None:
@@ -168,14 +170,14 @@ def test_a_folder_is_refused_once(tmp_path: Path) -> None:
 
 def test_a_line_of_texts_and_units_is_a_row() -> None:
     table = read_table("name;size;note\nM;;\nL;4;m\n", "the file")
-    assert table.texts(0) == ["M", "L"]
+    assert table.column_cells(0) == ["M", "L"]
     assert table.heads == ("name", "size", "note")
 
 
 def test_cells_of_text_and_missing_ones_stay_in_other_columns() -> None:
     table = read_table("name;limit;note\nGM 1,5;1,5;so; \nGM 2;;a.b\n".replace("so; ", "so"), "the file")
-    assert table.texts(0) == ["GM 1,5", "GM 2"]
-    assert table.digits([1], missing=[1]) == [["1.5", ""]]
-    assert math.isnan(table.numbers([1], missing=[1])[0][1])
+    assert table.column_cells(0) == ["GM 1,5", "GM 2"]
+    assert table.number_texts([1], missing=[1]) == [["1.5", ""]]
+    assert math.isnan(table.number_columns([1], missing=[1])[0][1])
     with pytest.raises(InputError, match='row 3, column "limit": must be a number; got an empty cell'):
-        table.numbers([1])
+        table.number_columns([1])

@@ -26,7 +26,7 @@ def test_random_titles_above_random_tables_are_skipped_and_counted(separator: st
         text = "\n".join(separator.join(row) + "\n" * int(random.integers(1, 3)) for row in rows)
         table = read_table(text, "the file")
         assert table.heads == ("time (ms)", *(f"force {n} (N)" for n in range(1, width))), text
-        np.testing.assert_array_equal(np.column_stack(table.numbers(range(width))), numbers)
+        np.testing.assert_array_equal(np.column_stack(table.number_columns(range(width))), numbers)
         said = f"{titles} title line{'s' if titles > 1 else ''} above the column names skipped"
         assert said in table.summary_text(range(width))
 

@@ -192,10 +192,10 @@ def test_sheets_count_signs_times_variants() -> None:
     evaluator = Evaluator(asked, found[2])
     assert evaluator.dimension == 3  # crank, size of the offset, mass
     u = np.random.default_rng(4).random((50, 3))
-    designs, _, _ = evaluator.screen(u)
+    designs, _, _ = evaluator.screen_designs_objectives_violation(u)
     assert designs.shape == (50, 4)
     assert np.all(designs[:, 1] == 0.3)
-    goals, limits = evaluator.exact_rows(u[evaluator.can_evaluate(u)])
+    goals, limits = evaluator.objective_and_constraint_rows(u[evaluator.can_evaluate(u)])
     assert goals.gradients.shape[2] == limits.gradients.shape[2] == 3
 
 

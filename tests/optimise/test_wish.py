@@ -110,7 +110,7 @@ def compare(of: ParetoFront, wishes: int, starts: int, seed: int) -> None:
     random, asked = np.random.default_rng(seed), Wishes(of)
     for _ in range(wishes):
         given, row = random_wish(of, random)
-        answer = asked.wish(given, row=row)
+        answer = asked.design_nearest_to_wishes(given, row=row)
         assert answer.found.columns["residual"][0] <= 1e-6
         others = independent(of, answer)
         assert answer.value == pytest.approx(_least(others, answer.found.dimensions[0]), abs=1e-7), given
@@ -189,7 +189,7 @@ def test_a_choice_is_free_again() -> None:
     asked, labels = Wishes(of), set()
     for row in range(len(of)):
         given = {"time_ratio": -of.values[row, 0], "peak_torque": of.values[row, 1]}
-        answer = asked.wish(given)
+        answer = asked.design_nearest_to_wishes(given)
         labels.add(answer.found.columns[choice_field("slider")][0])
         assert ((answer.found.values[0] - of.values[row]) / np.ptp(of.values, axis=0)).max() <= 1e-6
     assert labels == set(of.columns[choice_field("slider")])

@@ -97,7 +97,7 @@ def test_a_section_of_a_quantity_defines_it(name: str) -> None:
     assert "{instead}" not in text
     assert "got " not in text
     (limits,) = tomllib.loads(requirement(of)).values()
-    assert list(limits.values()) == [of.usual]
+    assert list(limits.values()) == [of.usual_value]
     assert list(limits) == [{"low": "max", "high": "min", "": "equals"}[of.better]]
 
 

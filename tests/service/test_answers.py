@@ -15,7 +15,13 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, kind_of_key, name_unit_and_factor_of_key, unit_text
+from slidercrank.objectives.kinds import (
+    DISPLAYED_KINDS,
+    PRESSURE,
+    name_and_kind_of_key,
+    name_unit_and_factor_of_key,
+    unit_text,
+)
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves
@@ -122,7 +128,7 @@ def assert_in_inches(metric: Any, inch: Any, factor: float = 1.0) -> None:
     """Compare the records of one answer in both systems; factor: of numbers without a key of their own."""
     if isinstance(metric, dict):
         for (key, value), (shown, other) in zip(metric.items(), inch.items(), strict=True):
-            name, kind = kind_of_key(key)
+            name, kind = name_and_kind_of_key(key)
             own = kind.display_unit("inch").factor / kind.metric.factor
             expected = OTHER_KEYS.get(key, (name + kind.display_unit("inch").suffix if kind.inch else key, own))
             assert shown == expected[0]

@@ -200,7 +200,7 @@ SHEETS: dict[str, Callable[[], PanelFigure]] = {
 } | {
     "static forces": lambda: static_analysis.figure(MACHINE, LINKAGE),
     "approximations": lambda: approximations_analysis.figure(MACHINE, LINKAGE),
-    "feeder approximations": lambda: approximations_analysis.figure(case_5.MACHINE, case_5.linkage(0.02)),
+    "feeder approximations": lambda: approximations_analysis.figure(case_5.MACHINE, case_5.feeder_linkage(0.02)),
 }
 
 

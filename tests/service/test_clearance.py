@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 
 from slidercrank.model.clearance.run import ClearanceRun
-from slidercrank.model.clearance.statistics import summarise
+from slidercrank.model.clearance.statistics import clearance_statistics
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Bar, Clearance
@@ -49,7 +49,7 @@ def text_of(found: dict[str, object]) -> str:
 
 
 def test_numbers_are_those_of_the_summary(run: ClearanceRun) -> None:
-    found, summary = numbers(MACHINE, LINKAGE, run=run), summarise(run)
+    found, summary = numbers(MACHINE, LINKAGE, run=run), clearance_statistics(run)
     assert json.loads(json.dumps(found, allow_nan=False)) == found
     assert (found["joint"], found["radial_clearance_mm"], found["status"]) == ("crank pin", 1.0, "done")
     assert (found["turns"], found["turns_discarded"]) == (3, 1)
@@ -67,7 +67,7 @@ def test_peaks_of_the_summary_are_peaks_of_the_motion(run: ClearanceRun) -> None
     """Turn by turn, with the ideal peak from a dense sweep of the ideal acceleration."""
     turn = np.floor(run.times / run.turn_time * (1.0 + 1e-12))
     peaks = [np.abs(run.slider_acceleration[turn == k]).max() for k in (1, 2, 3)]
-    summary = summarise(run)
+    summary = clearance_statistics(run)
     assert summary.peak_acceleration.value == pytest.approx(np.mean(peaks), rel=1e-12)
     sweep = LINKAGE.at(np.linspace(0.0, 2.0 * math.pi, 20001), speed=MACHINE.speed)
     ideal = np.abs(sweep.slider_acceleration).max()

@@ -10,7 +10,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.cylinder_machines import single_cylinder
+from slidercrank.model.machine.cylinders_as_machines import single_cylinder_machine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.sizing.counterweight import best_balance
@@ -39,7 +39,7 @@ def test_the_motor_is_that_of_all_cylinders() -> None:
     found, whole = motor.numbers(TWO, LINKAGE), analysis.numbers(TWO, LINKAGE)
     assert found["peak_torque_Nm"] == pytest.approx(whole["peak_torque_Nm"], rel=1e-12)
     assert found["rms_torque_Nm"] == pytest.approx(whole["rms_torque_Nm"], rel=1e-12)
-    one = motor.numbers(single_cylinder(TWO), LINKAGE)["mean_reflected_inertia_kg_m2"]
+    one = motor.numbers(single_cylinder_machine(TWO), LINKAGE)["mean_reflected_inertia_kg_m2"]
     assert found["mean_reflected_inertia_kg_m2"] == pytest.approx(2.0 * one, rel=1e-9)
     assert found["least_reflected_inertia_kg_m2"] < found["mean_reflected_inertia_kg_m2"]
 

@@ -25,7 +25,7 @@ from distributed import Client
 from sqlalchemy import create_engine
 from typer.testing import CliRunner
 
-from slidercrank.service.api.server import listen
+from slidercrank.service.api.server import listening_socket
 from slidercrank.service.cli import app
 from slidercrank.service.store import Store
 from tests.faults.dask_cluster import CALM
@@ -115,7 +115,7 @@ class Terminal:
 @pytest.fixture
 def free_port() -> int:
     """Return a port that is free now."""
-    with listen("127.0.0.1", 0) as one:
+    with listening_socket("127.0.0.1", 0) as one:
         return int(one.getsockname()[1])
 
 

@@ -23,7 +23,7 @@ from slidercrank.service.agents.call import Call, ToolResult
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
-from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.stored_designs import front_of_result
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.discovery import FRONT_OR_JOB_QUESTIONS
 from slidercrank.service.runs.result import json_ready
@@ -99,7 +99,7 @@ def refusal(ask: Callable[[], object]) -> str:
 
 def doors_of(solved: Solved, client: Client) -> Doors:
     result = read_run(solved.folder)
-    return Doors(solved.folder, client, solved.number, front_of(problem_of(solved.folder, result), result))
+    return Doors(solved.folder, client, solved.number, front_of_result(problem_of(solved.folder, result), result))
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +138,7 @@ def other(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         work(store, drain=True)
         result = read_run(folder)
         with served(store) as address, Client(address) as client:
-            yield Doors(folder, client, number, front_of(problem_of(folder, result), result))
+            yield Doors(folder, client, number, front_of_result(problem_of(folder, result), result))
 
 
 def assert_alike(doors: Doors, name: str, row: int | None, given: dict[str, Any]) -> dict[str, Any]:

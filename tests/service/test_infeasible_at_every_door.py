@@ -17,7 +17,7 @@ from slidercrank.model.errors import InfeasibleError, InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.client import Client
-from slidercrank.service.designs.judged_requirements import judge_rules
+from slidercrank.service.designs.judged_requirements import judged_rules_of_design
 from slidercrank.service.questions.design_analysis import quantities_of_design
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder
@@ -219,7 +219,7 @@ def test_a_design_of_an_impossible_job_is_analysed(kind: str) -> None:
     problem = parse_job(tables, require_feasible=False)
     assert problem.parts()[0].analyse([0.14, 0.31, 0.06])["time_ratio"] > 1.0
     row, _ = quantities_of_design(problem.mechanism.nominal, Linkage(0.14, 0.31, 0.06), problem.own)
-    assert judge_rules(problem, row)
+    assert judged_rules_of_design(problem, row)
 
 
 @pytest.mark.parametrize("kind", ["a slow stroke without a time ratio", "options without a design"])

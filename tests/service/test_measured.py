@@ -17,7 +17,7 @@ from rich.console import Console
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction
-from slidercrank.objectives.tables.curve_deviation import deviations
+from slidercrank.objectives.tables.curve_deviation import curve_deviations
 from slidercrank.service.designs import measured_curves_file
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves, text_of_measured_file
 from slidercrank.service.figures.panel_drawing import draw_panel_figure
@@ -346,5 +346,5 @@ def test_at_most_some_thousand_samples_are_drawn() -> None:
     measured = parse_measured_curves(text, fronts.MACHINE, LINKAGE)
     (panel,) = topic.figure(fronts.MACHINE, LINKAGE, measured=measured).panels
     assert len(panel.lines[-2].x) == 3000
-    (found,) = deviations(fronts.MACHINE, LINKAGE, measured.crank_angle, measured.values)
+    (found,) = curve_deviations(fronts.MACHINE, LINKAGE, measured.crank_angle, measured.values)
     assert panel.lines[-1].x == pytest.approx([math.degrees(found.crank_angle)], abs=1e-9)

@@ -14,7 +14,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
+from slidercrank.model.signals.panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from slidercrank.objectives.tables.all_quantities import analysis_columns
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves
@@ -91,7 +91,7 @@ def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_b
     assert index_of_first_maximum(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
     # At zero from below.
     assert index_of_first_maximum(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
-    assert [angle_in_cycle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
+    assert [wrap_into_cycle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
 
 
 @pytest.mark.slow
@@ -126,6 +126,6 @@ def test_no_extreme_of_a_symmetric_machine_is_named_at_the_end_of_its_cycle(seed
 def test_an_angle_before_zero_is_zero_where_equal_values_reach_it() -> None:
     # cos(t + d) differs from its greatest value by d^2 / 2 at zero: less than 1e-9 for d below 4.5e-5 rad.
     for before, expected in ((4e-5, 0.0), (2e-4, TURN - 2e-4)):
-        assert angle_in_cycle(TURN - before, TURN) == pytest.approx(expected, abs=1e-12)
-    assert f"{math.degrees(angle_in_cycle(TURN - 9.9e-5, TURN)):.2f}" == "0.00"
-    assert f"{math.degrees(angle_in_cycle(TURN - 1.1e-4, TURN)):.2f}" == "359.99"
+        assert wrap_into_cycle(TURN - before, TURN) == pytest.approx(expected, abs=1e-12)
+    assert f"{math.degrees(wrap_into_cycle(TURN - 9.9e-5, TURN)):.2f}" == "0.00"
+    assert f"{math.degrees(wrap_into_cycle(TURN - 1.1e-4, TURN)):.2f}" == "359.99"

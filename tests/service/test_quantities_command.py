@@ -34,7 +34,7 @@ def test_the_json_has_what_python_has(command: Command) -> None:
 @pytest.mark.parametrize("name", ["peak_torque", "position_error", "swing_angle"])
 def test_a_named_quantity_is_explained(name: str, command: Command) -> None:
     text, quantity = command("quantities", name).stdout, FACTS[name]
-    for fact in (quantity.sentence, quantity.formula, quantity.field, quantity.required.split("; ")[0]):
+    for fact in (quantity.sentence, quantity.formula, quantity.field, quantity.job_requirements_text.split("; ")[0]):
         assert fact in text
     assert json.loads(command("quantities", name, "--json").stdout)["quantities"][0]["formula"] == quantity.formula
 

@@ -252,7 +252,10 @@ def test_a_run_of_the_command_line_is_a_job_of_the_store(job: Path, runs: Path, 
     with Store(runs / "slidercrank.db") as store:
         (known,) = store.jobs()
         assert (known.state, known.run, known.name, known.worker) == ("done", run.name, "Short test [job]", None)
-        assert store.tables(known.id)["optimiser"] | {"seed": 4, "designs": 6} == store.tables(known.id)["optimiser"]
+        assert (
+            store.job_tables(known.id)["optimiser"] | {"seed": 4, "designs": 6}
+            == store.job_tables(known.id)["optimiser"]
+        )
         assert csv_text(store.result(known.id).designs) == designs(run)
         assert store.artefact(known.id, "job.toml").content == job.read_bytes()
         assert [event.data["state"] for event in store.events(known.id) if event.kind == "state"] == [

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.cli import app
-from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.stored_designs import front_of_result
 from slidercrank.service.questions.round.analysis import steps_of
 from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service import fronts
@@ -55,7 +55,7 @@ def test_help_names_the_command(command: Command) -> None:
 def test_json_has_the_numbers_of_python(banded: Path, command: Command) -> None:
     (folder,) = (file.parent for file in banded.glob("*/front.json"))
     result = read_run(folder)
-    front = front_of(problem_of(folder, result), result)
+    front = front_of_result(problem_of(folder, result), result)
     expected = front.rounded(
         2, {"crank": 0.0005, "rod": 0.001, "offset": 0.0005, "mechanism.slider.mass": 0.1}, count=3
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.api.server import host_names_of, is_loopback, listen, url_of
+from slidercrank.service.api.server import accepted_host_names, browser_url, is_loopback, listening_socket
 from slidercrank.service.store import Store
 from tests.service.conftest import Command
 
@@ -26,7 +26,7 @@ def refusal_sentence(command: Command, *arguments: object) -> str:
 
 
 def test_a_port_that_is_taken_is_refused_and_no_store_is_made(command: Command, runs: Path) -> None:
-    with listen("127.0.0.1", 0) as taken:
+    with listening_socket("127.0.0.1", 0) as taken:
         port = taken.getsockname()[1]
         message = refusal_sentence(command, "serve", "--port", port)
     assert f"127.0.0.1 port {port} gave: Address already in use; choose another one with --port" in message
@@ -85,18 +85,18 @@ def test_limits_that_are_none_are_refused(name: str, command: Command) -> None:
 
 
 def test_the_service_answers_to_the_names_of_this_machine_only() -> None:
-    assert host_names_of("127.0.0.1") == host_names_of("localhost") == ("127.0.0.1", "localhost", "[::1]")
-    assert host_names_of("10.0.0.5") == ("127.0.0.1", "localhost", "[::1]", "10.0.0.5")
-    assert host_names_of("0.0.0.0")[-1] == socket.gethostname()
-    assert host_names_of("fe80::1")[-1] == "[fe80::1]"
+    assert accepted_host_names("127.0.0.1") == accepted_host_names("localhost") == ("127.0.0.1", "localhost", "[::1]")
+    assert accepted_host_names("10.0.0.5") == ("127.0.0.1", "localhost", "[::1]", "10.0.0.5")
+    assert accepted_host_names("0.0.0.0")[-1] == socket.gethostname()
+    assert accepted_host_names("fe80::1")[-1] == "[fe80::1]"
 
 
 def test_the_address_has_the_port_that_was_free_and_the_token_once_it_is_made() -> None:
-    with listen("127.0.0.1", 0) as listening:
+    with listening_socket("127.0.0.1", 0) as listening:
         port = listening.getsockname()[1]
         assert port > 0
-        assert url_of("127.0.0.1", listening, None) == f"http://127.0.0.1:{port}/"
-        assert url_of("::1", listening, TOKEN) == f"http://[::1]:{port}/?token={TOKEN}"
+        assert browser_url("127.0.0.1", listening, None) == f"http://127.0.0.1:{port}/"
+        assert browser_url("::1", listening, TOKEN) == f"http://[::1]:{port}/?token={TOKEN}"
 
 
 def test_loopback_is_told_from_other_addresses() -> None:
@@ -106,4 +106,4 @@ def test_loopback_is_told_from_other_addresses() -> None:
 
 def test_a_name_that_leads_nowhere_is_refused() -> None:
     with pytest.raises(InputError, match="the service needs an address of this machine"):
-        listen("no such name", 8765)
+        listening_socket("no such name", 8765)

@@ -14,7 +14,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InfeasibleError, InputWarning, JobError
 from slidercrank.optimise.job import with_file_contents
 from slidercrank.optimise.job.job_file import toml_tables
-from slidercrank.service.api.job_files import Understood
+from slidercrank.service.api.job_parsing_and_checks import Understood
 from slidercrank.service.api.preview import Draft, preview_job
 from slidercrank.service.api.settings import Settings
 from tests.service.conftest import Command

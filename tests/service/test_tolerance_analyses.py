@@ -28,7 +28,7 @@ from slidercrank.model.tolerance.exact_worst_case import (
     position_deviation_extremes,
     worst_position_error,
 )
-from slidercrank.model.tolerance.monte_carlo import simulate, variance_contributions
+from slidercrank.model.tolerance.monte_carlo import simulate_machines_with_errors, variance_contributions
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.sensitivity import analysis as sensitivity_analysis
@@ -86,7 +86,7 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
     np.testing.assert_allclose([row["share_of_variance_percent"] for row in rows], 100.0 * of_variance, rtol=1e-9)
     for share in ("worst_case", "variance"):
         assert sum(row[f"share_of_{share}_percent"] for row in rows) == pytest.approx(100.0, rel=1e-12)
-    simulation = simulate(mechanism, SUPPORT, samples=2000, seed=4)
+    simulation = simulate_machines_with_errors(mechanism, SUPPORT, samples=2000, seed=4)
     within = 100.0 * np.mean(simulation.greatest <= 3e-3)
     (only,) = found["yields"]
     assert only["yield_percent"] == pytest.approx(within, rel=1e-12)
@@ -137,7 +137,7 @@ def test_error_bands_are_those_of_the_model() -> None:
     assert bands.greatest is not None
     np.testing.assert_allclose(bands.least, exact.least, rtol=1e-9)
     np.testing.assert_allclose(bands.greatest, exact.greatest, rtol=1e-9)
-    errors = simulate(GAPPED, SUPPORT, theta, samples=1000, seed=3).errors
+    errors = simulate_machines_with_errors(GAPPED, SUPPORT, theta, samples=1000, seed=3).errors
     np.testing.assert_allclose(bands.percentiles, np.percentile(errors, PERCENTS, axis=0), rtol=1e-9)
     np.testing.assert_allclose(bands.shares.sum(axis=0), 100.0, rtol=1e-12)
     assert len(bands.sources) == 8

@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.service.figures.datasheet import cycle_curves
-from slidercrank.service.figures.panel_figure import PanelFigure, sampled_turn
+from slidercrank.service.figures.panel_figure import PanelFigure, sampled_crank_angles
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.extremes import analysis as extremes
 from slidercrank.service.questions.friction import analysis as friction
@@ -83,8 +83,8 @@ def test_the_indicator_has_no_spike_where_the_turns_meet() -> None:
 
 
 def test_what_is_marked_on_a_turn_is_marked_on_both() -> None:
-    angles = sampled_turn([0.3], turns=2)
+    angles = sampled_crank_angles([0.3], turns=2)
     for place in (0.3, 0.3 + 2.0 * math.pi):
         assert (np.abs(angles - place) < 2e-9).sum() == 2
     assert angles[-1] == pytest.approx(4.0 * math.pi)
-    assert np.array_equal(sampled_turn([0.3]), sampled_turn([0.3], turns=1))
+    assert np.array_equal(sampled_crank_angles([0.3]), sampled_crank_angles([0.3], turns=1))

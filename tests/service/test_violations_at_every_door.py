@@ -14,8 +14,8 @@ import pytest
 import slidercrank as sc
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.designs.judged_requirements import front_violations_in_words, violations_in_words
-from slidercrank.service.designs.selection import result_part
-from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.selection import result_with_rows
+from slidercrank.service.designs.stored_designs import front_of_result
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph
 from slidercrank.service.report.subject import Subject
@@ -92,7 +92,7 @@ def test_a_front_says_it_of_each_design_and_only_of_those_beyond() -> None:
     allowed = float(np.sort(stresses)[1:3].mean())
     material = {**MATERIAL, "yield_strength": f"{3.0**0.5 * allowed!r} MPa"}
     other = parse_job({**TABLES, "sections": {**TABLES["sections"], "material": material}})
-    front = replace(front_of(parse_job(TABLES), whole), problem=other)
+    front = replace(front_of_result(parse_job(TABLES), whole), problem=other)
     found = front.violated[SHEAR]
     assert 0 < np.count_nonzero(found) < len(front)
     assert found == pytest.approx(1e6 * np.maximum(stresses - allowed, 0.0), rel=1e-9)
@@ -102,7 +102,9 @@ def test_a_run_keeps_and_shows_it(kept: Result, command: Command) -> None:
     assert kept.violated == result().violated
     assert json.loads(command("front", "latest", "--json").stdout)["violated"] == kept.violated
     one = json.loads(command("front", "latest", "--design", 2, "--json").stdout)
-    assert one["violated"] == {key: [by[1]] for key, by in kept.violated.items()} == result_part(kept, [1]).violated
+    assert (
+        one["violated"] == {key: [by[1]] for key, by in kept.violated.items()} == result_with_rows(kept, [1]).violated
+    )
     count = len(kept.designs)
     whole = command("front", "latest").stdout
     assert f"Beyond the allowable value: shear of the crank pin in {count} of {count} designs, at worst" in whole

@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.optimise.decisions.wish import wish
 from slidercrank.service.api.app import create_app
-from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.stored_designs import front_of_result
 from slidercrank.service.jobs.stores import open_store
 from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service.api.serving import serving
@@ -28,7 +28,7 @@ def wish_options(wishes: dict[str, str]) -> list[str]:
 def test_json_has_the_numbers_of_python(kept: Path, command: Command) -> None:
     (folder,) = (file.parent for file in kept.glob("*/front.json"))
     result = read_run(folder)
-    expected = wish(front_of(problem_of(folder, result), result), QUESTIONS)
+    expected = wish(front_of_result(problem_of(folder, result), result), QUESTIONS)
     done = command("wish", "latest", "--runs", kept, *wish_options(QUESTIONS), "--json")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)

@@ -31,7 +31,7 @@ from .load import (
     require_valid_table,
     require_word,
 )
-from .load_text import SLIDES, effect_by_direction, force_magnitude_text, range_of_angles, without_zeros_before_steps
+from .load_text import SLIDES, effect_by_direction, force_magnitude_text, range_of_angles, without_end_zeros_at_steps
 
 _ROUNDING = 1e-9  # rad
 _TURN = 2.0 * math.pi
@@ -139,7 +139,7 @@ class AngleTable(Load):
         return has_step(self.angles) or (self._is_closed and self.forces[-1] != self.forces[0])
 
     @property
-    def has_knots_along_rotation(self) -> bool:
+    def has_knots_in_sense_of_rotation(self) -> bool:
         """Whether the angles are counted from a dead centre."""
         return self.datum != "zero crank angle"
 
@@ -149,12 +149,12 @@ class AngleTable(Load):
         constant = forces == {0.0} or (self.during == "cycle" and len(forces) == 1)
         return {} if constant else {AngleTable: (1.0,)}
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the work in the strokes in which the force acts."""
         if self.during == ("inward stroke" if passage.outward else "outward stroke"):
             return 0.0
         angle = passage.angle
-        if self.has_knots_along_rotation:
+        if self.has_knots_in_sense_of_rotation:
             step = angle[:, 1:2] - angle[:, :1]
             starts = (self.datum == "inner dead centre") == passage.outward
             angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
@@ -165,7 +165,7 @@ class AngleTable(Load):
     @property
     def magnitude_text(self) -> str:
         """The minimum and maximum force."""
-        return force_magnitude_text(without_zeros_before_steps(self.angles, self.forces))
+        return force_magnitude_text(without_end_zeros_at_steps(self.angles, self.forces))
 
     @property
     def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]] | None:

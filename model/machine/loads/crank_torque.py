@@ -163,7 +163,7 @@ class CrankTorqueTable(AngleTable):
         pairs = zip(pairwise(angles), pairwise(torques), strict=True)
         return {CrankTorqueTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return zero, because it loads neither stroke."""
         return 0.0
 

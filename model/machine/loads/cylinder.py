@@ -108,7 +108,7 @@ class Cylinder(Load):
         """True, because gas expands in one stroke and is compressed in the other."""
         return True
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the work done by gas and back pressure."""
         inner = passage.distance.min(axis=1, keepdims=True)
         outer = passage.distance.max(axis=1, keepdims=True)

@@ -206,9 +206,12 @@ class FourStroke(Engine):
             return None
         return "high" if name == "exhaust" else name
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the mean work over both turns."""
-        return 0.5 * (self.load_on_turn(1).stroke_work(passage) + self.load_on_turn(2).stroke_work(passage))
+        return 0.5 * (
+            self.load_on_turn(1).work_deciding_loaded_stroke(passage)
+            + self.load_on_turn(2).work_deciding_loaded_stroke(passage)
+        )
 
     @property
     def magnitude_text(self) -> str:

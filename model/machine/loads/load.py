@@ -174,7 +174,7 @@ class Load:
         return False
 
     @property
-    def has_knots_along_rotation(self) -> bool:
+    def has_knots_in_sense_of_rotation(self) -> bool:
         """Whether the knots are crank angles counted in the sense of rotation."""
         return False
 
@@ -225,7 +225,7 @@ class Load:
         takes = not self.is_conservative and (moving or not self.speed_power)
         return {type(self).__name__: (1.0,)} if takes else {}
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the work (n,), J, that decides which stroke is loaded.
 
         Zero for a load that returns it in the other stroke, or that always resists.
@@ -313,12 +313,12 @@ def require_valid_table(argument: str, at: Sequence[float], forces: Sequence[flo
             f"{len(forces)} {values}"
         )
     require_all_finite(f"a table of {argument} and {values}", (*at, *forces), "throughout")
-    n = first_misplaced_point(at)
+    n = index_of_first_misplaced_point(at)
     if n is not None:
-        raise InputError(f"{argument} of a table {broken_order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
+        raise InputError(f"{argument} of a table {order_rule_broken_at_point(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
 
 
-def first_misplaced_point(at: Sequence[float]) -> int | None:
+def index_of_first_misplaced_point(at: Sequence[float]) -> int | None:
     """Return the index of the first point that lies below its predecessor or is the third at one location.
 
     None if there is no such point.
@@ -329,7 +329,7 @@ def first_misplaced_point(at: Sequence[float]) -> int | None:
     return None
 
 
-def broken_order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
+def order_rule_broken_at_point(n: int, at: Sequence[float], point: str, before: str) -> str:
     """Return the rule that point n in a table breaks, with this point and its predecessor as typed."""
     if at[n] < at[n - 1]:
         return f"must increase; got {point} after {before}; sort the table"

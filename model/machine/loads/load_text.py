@@ -47,7 +47,7 @@ def force_magnitude_text(forces: Iterable[float], unit: str = "N", ways: Ways = 
     return f"{start}{greatest:.6g} {unit} {ways[0] if high > 0.0 else ways[1]}"
 
 
-def without_zeros_before_steps(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
+def without_end_zeros_at_steps(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
     """Return the forces in a table, without a zero at either end that is followed or preceded by a step."""
     first = int(forces[0] == 0.0 and at[0] == at[1])
     last = int(forces[-1] == 0.0 and at[-1] == at[-2])
@@ -56,7 +56,7 @@ def without_zeros_before_steps(at: Sequence[float], forces: Sequence[float]) -> 
 
 def effect_in_strokes(outward: Sequence[float], inward: Sequence[float]) -> str:
     """Return the effect of forces, N outward, on each stroke: "helps the outward stroke"."""
-    verbs = _verb(outward), _verb([-force for force in inward])
+    verbs = _effect_verb(outward), _effect_verb([-force for force in inward])
     if verbs[0] == verbs[1]:
         return f"{verbs[0]} both strokes" if verbs[0] else "no effect"
     return " and ".join(f"{verb} the {way} stroke" for verb, way in zip(verbs, SLIDES, strict=True) if verb)
@@ -77,7 +77,7 @@ def spring_effect(stiffness: float) -> str:
     return f"{away} motion away from there and {back} motion back, no net work over a cycle"
 
 
-def _verb(forces: Sequence[float]) -> str:
+def _effect_verb(forces: Sequence[float]) -> str:
     """Return the verb for forces along the motion: "helps", "resists", both, or none."""
     helps, resists = max(forces) > 0.0, min(forces) < 0.0
     if helps and resists:

@@ -27,7 +27,7 @@ from .load import (
     require_valid_table,
     require_word,
 )
-from .load_text import force_magnitude_text, range_of_positions, without_zeros_before_steps
+from .load_text import force_magnitude_text, range_of_positions, without_end_zeros_at_steps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +83,7 @@ class PositionTable(Load):
             return {}
         return {(self.datum, self.positions, self.forces): (1.0 if self.during == "outward stroke" else -1.0,)}
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the work of a table in one stroke; a table over the whole cycle returns what it absorbs."""
         if self.during != ("outward stroke" if passage.outward else "inward stroke"):
             return 0.0
@@ -97,7 +97,7 @@ class PositionTable(Load):
     @property
     def magnitude_text(self) -> str:
         """The minimum and maximum force."""
-        return force_magnitude_text(without_zeros_before_steps(self.positions, self.forces))
+        return force_magnitude_text(without_end_zeros_at_steps(self.positions, self.forces))
 
     @property
     def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:

@@ -45,7 +45,7 @@ class StrokeForce(Load):
         """Return the force in the outward stroke and the negated force in the inward stroke."""
         return {StrokeForce: (self.outward, -self.inward)}
 
-    def stroke_work(self, passage: Passage) -> Any:
+    def work_deciding_loaded_stroke(self, passage: Passage) -> Any:
         """Return the force times the stroke."""
         return passage.work_of_force(self.outward if passage.outward else self.inward)
 

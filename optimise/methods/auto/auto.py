@@ -12,13 +12,13 @@ from ....model.arrays import Array, IntArray, Mask, sorted_unique
 from ...front.choose_design import nearest_neighbours
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
-from ...front.hypervolume import ReportProgress, choose_designs
+from ...front.hypervolume import ReportProgress, choose_designs_by_hypervolume
 from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
 from ...search.assemble_front import SELECTING, assemble_front, objective_ranges
 from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stack_rows
 from ...search.evaluation import Evaluator
-from ...search.recorded_polish import polish_recorded, project_recorded
+from ...search.recorded_polish import move_onto_constraints_recorded, polish_recorded
 from ...search.sample_and_zoom import (
     FIRST,
     SAMPLES,
@@ -26,11 +26,11 @@ from ...search.sample_and_zoom import (
     Archive,
     Run,
     enumerate_branches,
-    explore,
+    sample_and_zoom,
     samples_per_branch,
     searched_evaluators,
 )
-from ...search.sampling import first_samples, random_generator, sample_near
+from ...search.sampling import first_samples, random_generator, sample_near_parents
 from ..registry import Method
 
 ROUNDS = 4
@@ -50,7 +50,9 @@ _GAIN = 1e-3
 _NEIGHBOURS = 2  # neighbours per objective, between which gaps are sought
 
 
-def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
+def search_front_by_method(
+    method: Method, problem: Problem, evaluators: list[Evaluator], run: Run
+) -> ParetoFront | None:
     """Return the front that a method finds, None if nothing is feasible.
 
     Combinations without free unknowns are enumerated; the method searches the others.
@@ -67,21 +69,23 @@ def deliver_front(problem: Problem, evaluators: list[Evaluator], archive: Archiv
     several = len(problem.objectives) > 1
     starts = []
     for group in archive.feasible_and_infeasible():
-        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading_rows(0, _STARTS)
-        starts += group[rows].by_branch(evaluators)
+        rows = _choose_rows_to_polish(problem, group, evaluators[0], run) if several else group.leading_rows(0, _STARTS)
+        starts += group[rows].points_by_branch(evaluators)
         if several:
             extremes = _starts_for_extremes(evaluators, group)
-            run.plan_rounds(len(extremes) + len({index for _, index, _ in extremes}) + _batch_count(starts))
+            run.expect_rounds(len(extremes) + len({index for _, index, _ in extremes}) + _batch_count(starts))
             for index, ends in _polish_extremes(evaluators, extremes, candidates.span):
                 if ends is not None:
-                    candidates.add(index, ends)
+                    candidates.add_feasible(index, ends)
                 run.report_round("polishing", free, archive)
     for attempt in range(ROUNDS):
-        run.plan_rounds(_batch_count(starts))
+        run.expect_rounds(_batch_count(starts))
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 run.begin_round("polishing")
-                candidates.add(index, polish_recorded(evaluators[index], u[begin : begin + BATCH], candidates.span))
+                candidates.add_feasible(
+                    index, polish_recorded(evaluators[index], u[begin : begin + BATCH], candidates.span)
+                )
                 run.report_round("polishing", free, archive)
         if attempt == ROUNDS - 1 or not len(candidates) or not free:
             break
@@ -99,8 +103,8 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
     candidates = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
     for group in archive.feasible_and_infeasible():
-        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
-        add_projected(candidates, group[rows], evaluators)
+        rows = _choose_rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
+        add_moved_onto_constraints(candidates, group[rows], evaluators)
     return assemble_front(problem, evaluators, candidates, run) if len(candidates) else None
 
 
@@ -115,18 +119,18 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
     return run.candidates
 
 
-def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
+def add_moved_onto_constraints(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
     """Add candidates unchanged, except those that violate constraints, which are moved onto them."""
-    for index, u in chosen.by_branch(evaluators):
+    for index, u in chosen.points_by_branch(evaluators):
         valid = u[evaluators[index].can_evaluate(u)]
-        candidates.add(index, project_recorded(evaluators[index], valid, candidates.span))
+        candidates.add_feasible(index, move_onto_constraints_recorded(evaluators[index], valid, candidates.span))
 
 
 def _polished_design_count(problem: Problem) -> int:
     return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
-def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> IntArray:
+def _choose_rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> IntArray:
     """Return the rows of the designs to polish for the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
@@ -135,9 +139,9 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     values, report = group.values[rows], run.stage_reporter(SELECTING)
 
     def compute() -> tuple[IntArray]:
-        return (choose_designs(values, _polished_design_count(problem), always=always, report=report),)
+        return (choose_designs_by_hypervolume(values, _polished_design_count(problem), always=always, report=report),)
 
-    return rows[evaluator.step("choice", (values,), compute)[0]]
+    return rows[evaluator.recorded_step("choice", (values,), compute)[0]]
 
 
 def _batch_count(starts: list[tuple[int, Array]]) -> int:
@@ -149,7 +153,7 @@ def _starts_for_extremes(evaluators: list[Evaluator], group: Archive) -> list[tu
     return [
         (column, index, u)
         for column in range(group.values.shape[1])
-        for index, u in group[group.leading_rows(column, _EXTREMES)].by_branch(evaluators)
+        for index, u in group[group.leading_rows(column, _EXTREMES)].points_by_branch(evaluators)
     ]
 
 
@@ -199,7 +203,7 @@ def points_to_polish_next(
     Points that dominate a polished design come first. If candidates are too few, points that no polished design
     dominates follow, and midpoints between neighbours. report: called many times a second.
     """
-    best = candidates[candidates.best(report)]
+    best = candidates[candidates.nondominated_rows(report)]
     front = best.values / best.span
     _screen_fresh_points(problem, evaluators, archive, best, attempt)
     report(0, 1)
@@ -209,11 +213,11 @@ def points_to_polish_next(
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(better & archive.is_feasible)[:_FILLING]
     wanting = _polished_design_count(problem) - len(front) if front.shape[1] > 1 else 0
-    starts = archive[_best_contributors(screened, rows, front, max(wanting, 32), report)].by_branch(evaluators)
+    starts = archive[_best_contributors(screened, rows, front, max(wanting, 32), report)].points_by_branch(evaluators)
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~better)
         rows = _best_contributors(screened, rows[:: 1 + len(rows) // _FILLING], front, wanting, report)
-        starts += archive[rows].by_branch(evaluators)
+        starts += archive[rows].points_by_branch(evaluators)
         starts += _midpoints_of_gaps(evaluators, best, wanting)
     return starts
 
@@ -231,7 +235,7 @@ def _screen_fresh_points(
         for index, evaluator in enumerate(evaluators):
             yield index, evaluator, first_samples(everywhere, evaluator.dimension, seed, 200 + k * attempt + index)
             parents = stack_rows(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
-            near = sample_near(parents, best.values, nearby, _WIDTH, random)
+            near = sample_near_parents(parents, best.values, nearby, _WIDTH, random)
             yield index, evaluator, np.concatenate([near, parents[best.branch != index]])
 
     archive.screen_all(points())
@@ -251,7 +255,7 @@ def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int
     if front.shape[1] == 1:
         return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
     union = np.concatenate([front, screened[rows]])
-    picked = choose_designs(union, len(front) + count, always=tuple(range(len(front))), report=report)
+    picked = choose_designs_by_hypervolume(union, len(front) + count, always=tuple(range(len(front))), report=report)
     return rows[picked[picked >= len(front)] - len(front)]
 
 
@@ -269,7 +273,7 @@ def _midpoints_of_gaps(evaluators: list[Evaluator], best: FrontCandidates, count
     gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)
     pairs = pairs[np.argsort(-gap, kind="stable")[:count]]
     middle = 0.5 * (best.u[pairs[:, 0]] + best.u[pairs[:, 1]])
-    return replace(best[pairs[:, 0]], u=middle).by_branch(evaluators)
+    return replace(best[pairs[:, 0]], u=middle).points_by_branch(evaluators)
 
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -277,8 +281,8 @@ def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     # This holds if no gaps need filling and every branch has an extreme design for each objective.
     m = len(problem.objectives)
     extremes = (m + 1) * len(evaluators) if m > 1 else 0
-    run.plan_rounds(1 + len(WIDTHS) + extremes + -(-_polished_design_count(problem) // BATCH))
-    return explore(problem, evaluators, run)
+    run.expect_rounds(1 + len(WIDTHS) + extremes + -(-_polished_design_count(problem) // BATCH))
+    return sample_and_zoom(problem, evaluators, run)
 
 
 AUTO = Method(

@@ -16,7 +16,7 @@ from ...search.candidates import FrontCandidates
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
 from ...search.sample_and_zoom import Archive, Run
-from .auto import add_projected
+from .auto import add_moved_onto_constraints
 
 _LEAST, _MOST_SECONDS, _SHARE = 1.0, 5.0, 0.1
 """Time in which a front is delivered: a tenth of the search, within limits, s."""
@@ -60,26 +60,26 @@ _SLOW = (
 
 def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     candidates, archive = run.candidates, run.archive
-    seconds = min(max(_LEAST, _SHARE * run.checkpoints.seconds), _MOST_SECONDS)
+    seconds = min(max(_LEAST, _SHARE * run.checkpoints.elapsed_seconds), _MOST_SECONDS)
     if len(archive):
-        if not candidates.free.any():
+        if not candidates.has_free_unknowns.any():
             span = objective_ranges(problem, np.concatenate([archive.values, candidates.values]))
             candidates = candidates.only_enumerated(span)
-        _add_archive(problem, evaluators, archive, candidates, _PROJECTING * seconds)
+        _add_archived_designs(problem, evaluators, archive, candidates, _PROJECTING * seconds)
     if not len(candidates):
         return empty_front(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     candidates = candidates[_evenly_spread_rows(candidates.values, _MOST)]
-    best = candidates.best()
+    best = candidates.nondominated_rows()
     rows = best[_evenly_spread_rows(candidates.values[best], problem.settings.designs)]
-    rows = _rows_in_time(problem, evaluators, candidates, rows, _ANALYSING * seconds)
+    rows = _rows_computable_in_time(problem, evaluators, candidates, rows, _ANALYSING * seconds)
     return assemble_front(problem, evaluators, candidates, run, rows)
 
 
-def _add_archive(
+def _add_archived_designs(
     problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates, seconds: float
 ) -> None:
     """Add designs of an archive, moved onto the constraints, unless a polished design is better."""
-    polished = candidates.values[candidates.free]
+    polished = candidates.values[candidates.has_free_unknowns]
     groups = (group[_undominated_rows(group.values, polished)] for group in archive.feasible_and_infeasible())
     # Designs that need no move come first.
     first, *rest = (group[_evenly_spread_rows(group.values, problem.settings.designs)] for group in groups)
@@ -88,7 +88,7 @@ def _add_archive(
     # Each batch is spread over the whole front.
     batches = -(-len(chosen) // _BATCH)
     for begin in range(batches):
-        add_projected(candidates, chosen[begin::batches], evaluators)
+        add_moved_onto_constraints(candidates, chosen[begin::batches], evaluators)
         if begin == 0:  # which may have loaded kernels
             end = time.perf_counter() + seconds
         if len(candidates) and time.perf_counter() > end:
@@ -103,7 +103,7 @@ def _undominated_rows(values: Array, rivals: Array) -> IntArray:
     return rows[rows >= 0]
 
 
-def _rows_in_time(
+def _rows_computable_in_time(
     problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: IntArray, seconds: float
 ) -> IntArray:
     """Return the rows whose quantities can be computed in a time, usually all of them."""

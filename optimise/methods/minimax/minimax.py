@@ -30,7 +30,7 @@ from ....model.arrays import Array
 from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
 from ...search.evaluation import Evaluator
-from ...search.sample_and_zoom import SAMPLES, Archive, Run, explore
+from ...search.sample_and_zoom import SAMPLES, Archive, Run, sample_and_zoom
 from ...search.sampling import distant_rows, first_samples
 from ..local import is_budget_spent
 from ..registry import Method
@@ -43,29 +43,29 @@ _LAST = 4096  # samples for the starts if none is feasible
 
 def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the local optima at which the descents ended."""
-    screened = explore(_limit_samples(problem), evaluators, run)
+    screened = sample_and_zoom(_limit_samples(problem), evaluators, run)
     scale, begin = descent_starts(problem, evaluators, screened)
-    run.plan_rounds(len(begin))
+    run.expect_rounds(len(begin))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     archive = Archive.empty(1)
     for index, u in begin:
         if is_budget_spent(problem, evaluators):
             break
-        end, top, violation = _end_of_descent(evaluators[index], descents[index], u)
+        end, top, violation = _descend_recorded(evaluators[index], descents[index], u)
         if violation <= FEASIBLE:
             archive.add_points(index, end[None], np.array([[top * scale]]))
         run.report_round("descending", evaluators, archive)
     return archive
 
 
-def _end_of_descent(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
+def _descend_recorded(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
     """Return the end of the descent from a point, with its greatest piece and its violation; a recorded step."""
 
     def compute() -> tuple[Array, Array]:
-        point = descent.run(u)
-        return point.u, np.array([point.top, point.violation])
+        point = descent.descend_from(u)
+        return point.u, np.array([point.greatest_piece, point.violation])
 
-    end, measures = evaluator.step("descent", (u, np.array([descent.scale])), compute)
+    end, measures = evaluator.recorded_step("descent", (u, np.array([descent.scale])), compute)
     top, violation = measures.tolist()
     return end, top, violation
 
@@ -98,7 +98,9 @@ def descent_starts(
 
 def _highest_piece(evaluator: Evaluator, u: Array) -> float:
     """Return the greatest piece at a point; a recorded step."""
-    heights = evaluator.step("top", (u,), lambda: (evaluator.exact_rows(u[None])[0].values.max(axis=1),))
+    heights = evaluator.recorded_step(
+        "top", (u,), lambda: (evaluator.objective_and_constraint_rows(u[None])[0].values.max(axis=1),)
+    )
     return float(heights[0][0])
 
 
@@ -115,7 +117,7 @@ def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Arra
     ranked: list[tuple[float, int, Array]] = []
     for index, evaluator in enumerate(evaluators):
         u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)
-        violation = evaluator.screen(u)[2]
+        violation = evaluator.screen_designs_objectives_violation(u)[2]
         rows = np.argsort(violation, kind="stable")[:STARTS]
         ranked += [(float(violation[row]), index, u[row]) for row in rows[np.isfinite(violation[rows])].tolist()]
     return [(index, u) for _, index, u in sorted(ranked, key=lambda item: item[0])[:STARTS]]

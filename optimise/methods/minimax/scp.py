@@ -36,7 +36,7 @@ class Point:
     residual: float = np.inf
 
     @property
-    def top(self) -> float:
+    def greatest_piece(self) -> float:
         """The greatest piece."""
         return float(self.goals.values.max())
 
@@ -45,9 +45,9 @@ class Point:
         """The greatest relative violation."""
         return float(np.max(self.limits.values, initial=0.0))
 
-    def merit(self, weight: float) -> float:
+    def penalty_merit(self, weight: float) -> float:
         """Return the exact penalty function."""
-        return self.top + weight * self.violation
+        return self.greatest_piece + weight * self.violation
 
 
 class Descent:
@@ -57,7 +57,7 @@ class Descent:
         self.evaluator, self.scale = evaluator, scale
         self._programmes: dict[tuple[int, int, int], Subproblem] = {}
 
-    def run(self, start: Array) -> Point:
+    def descend_from(self, start: Array) -> Point:
         """Return the end of the descent from a valid point (k,) in the unit box."""
         point = self._point_at(np.clip(start, 0.0, 1.0))
         radius, weight = _RADIUS, _WEIGHT
@@ -90,11 +90,11 @@ class Descent:
         return point
 
     def _point_at(self, u: Array) -> Point:
-        goals, limits = self.evaluator.exact_rows(u[None])
+        goals, limits = self.evaluator.objective_and_constraint_rows(u[None])
         scaled = replace(goals, values=goals.values / self.scale, gradients=goals.gradients / self.scale)
         return Point(u, rows_of_designs(scaled, 0), rows_of_designs(limits, 0))
 
-    def _solve(
+    def _solve_step(
         self, point: Point, goals: Array, limits: Array, root: Array, radius: float, weight: float
     ) -> Step | None:
         """Return the step for these values of the rows, relative to the point's greatest piece."""
@@ -102,7 +102,7 @@ class Descent:
         if shape not in self._programmes:
             self._programmes[shape] = Subproblem(*shape)
         return self._programmes[shape].solve(
-            (goals - point.top, point.goals.gradients),
+            (goals - point.greatest_piece, point.goals.gradients),
             (limits, point.limits.gradients),
             root,
             np.maximum(-point.u, -radius),
@@ -113,10 +113,10 @@ class Descent:
     def _step_and_penalty(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
         """Return the step, and the penalty that its multipliers require: an exact penalty exceeds their sum."""
         while True:
-            step = self._solve(point, point.goals.values, point.limits.values, root, radius, weight)
+            step = self._solve_step(point, point.goals.values, point.limits.values, root, radius, weight)
             if step is None or step.limits.sum() < 0.9 * weight or weight >= _HEAVIEST:
                 return step, weight
-            heavier = self._solve(point, point.goals.values, point.limits.values, root, radius, 10.0 * weight)
+            heavier = self._solve_step(point, point.goals.values, point.limits.values, root, radius, 10.0 * weight)
             if heavier is None or heavier.slack > 0.9 * step.slack:
                 return step, weight  # no step within the radius removes the violation
             weight *= 10.0
@@ -128,8 +128,8 @@ class Descent:
         if not self.evaluator.can_evaluate(u[None])[0]:
             return -1.0, None
         trial = self._point_at(u)
-        actual = point.merit(weight) - trial.merit(weight)
-        noise = _NOISE * (1.0 + abs(point.top) + weight)
+        actual = point.penalty_merit(weight) - trial.penalty_merit(weight)
+        noise = _NOISE * (1.0 + abs(point.greatest_piece) + weight)
         if predicted <= noise:
             return (1.0 if abs(actual) <= noise else -1.0), trial
         return (actual + noise) / predicted, trial
@@ -144,7 +144,7 @@ class Descent:
             values_corrected_for_curvature(present, after, step.move)
             for present, after in ((point.goals, trial.goals), (point.limits, trial.limits))
         )
-        corrected = self._solve(point, goals, limits, root, radius, weight)
+        corrected = self._solve_step(point, goals, limits, root, radius, weight)
         if corrected is None:
             return None
         # Judged by the decrease that the first step predicted, because the corrected rows predict what they were
@@ -159,7 +159,7 @@ class Descent:
         valid = self.evaluator.can_evaluate(moved)
         if not valid.all():
             return np.zeros((k, k))
-        goals, limits = self.evaluator.exact_rows(moved)
+        goals, limits = self.evaluator.objective_and_constraint_rows(moved)
         goals = replace(goals, gradients=goals.gradients / self.scale)
         hessian = weighted_gradient_change(point.goals, goals, step.goals) + weighted_gradient_change(
             point.limits, limits, step.limits
@@ -179,7 +179,7 @@ def lagrangian_residual(point: Point, step: Step) -> float:
     )
     is_piece, edge = np.isfinite(point.goals.values), np.isfinite(point.limits.values)
     gap = (
-        step.goals[is_piece] @ (point.top - point.goals.values[is_piece])
+        step.goals[is_piece] @ (point.greatest_piece - point.goals.values[is_piece])
         + step.limits[edge] @ np.abs(point.limits.values[edge])
         + step.lower_multipliers @ point.u
         + step.upper_multipliers @ (1.0 - point.u)

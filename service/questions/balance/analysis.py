@@ -15,7 +15,7 @@ from ....model.signals.averages import signal_averages
 from ....model.signals.signals import Signal
 from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.machine_needs import MOTION
-from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, NamedNumber, joined, named_number, number_list, remark_with_value
 from ..peaks import Peak, lengths_row, peak
 from ..record_types import Note, ShakingNumbers
@@ -53,8 +53,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)
     weight, bare = mechanism.counterweight, _without_counterweight(mechanism)
-    force, moment = (_shaking_of(mechanism, signal, linkage) for *_, signal in _CURVES)
-    force_bare, moment_bare = (None if bare is None else _shaking_of(bare, signal, linkage) for *_, signal in _CURVES)
+    force, moment = (_peak_and_rms_of_shaking(mechanism, signal, linkage) for *_, signal in _CURVES)
+    force_bare, moment_bare = (
+        None if bare is None else _peak_and_rms_of_shaking(bare, signal, linkage) for *_, signal in _CURVES
+    )
     return {
         "counterweight_kg": weight.mass,
         "counterweight_radius_mm": 1e3 * weight.radius,
@@ -76,7 +78,7 @@ class _Shaking(NamedTuple):
     rms: float
 
 
-def _shaking_of(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
+def _peak_and_rms_of_shaking(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
     rms = signal_averages(mechanism, signal, lengths_row(linkage)).rms[0]
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
@@ -105,7 +107,7 @@ def blocks(numbers: Shaking) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return shaking force and moment over the cycle, with and without the counterweight."""
-    theta, bare = sampled_turn(), _without_counterweight(mechanism)
+    theta, bare = sampled_crank_angles(), _without_counterweight(mechanism)
     degrees, now = np.degrees(theta), _shaking_curves_of(mechanism, linkage, theta)
     size, moment = (
         [Line("as it is", degrees, np.hypot(now.force_x, now.force_y))],

@@ -6,7 +6,7 @@ from typing import Any
 from ....model.arrays import Array
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
-from ....objectives.tables.design_input import columns_of_numbers
+from ....objectives.tables.design_input import columns_of_design_numbers
 from ....optimise.certificate.certificate import Certificate, Step
 from ....optimise.certificate.certify import certify_designs
 from ....optimise.certificate.defaults import EPSILON, SECONDS
@@ -90,7 +90,7 @@ def _certificate_record(certificate: Certificate, problem: Problem) -> dict[str,
 def _values_by_column(values: Array | None, problem: Problem) -> dict[str, Any] | None:
     if values is None:
         return None
-    columns = columns_of_numbers(problem.mechanism.varying).values()
+    columns = columns_of_design_numbers(problem.mechanism.varying).values()
     return {key: (unit.factor * value).tolist() for (key, unit), value in zip(columns, values, strict=True)}
 
 

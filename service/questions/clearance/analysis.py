@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ....model.clearance.run import ClearanceProgress, ClearanceRun, Status, simulate
-from ....model.clearance.statistics import summarise
+from ....model.clearance.statistics import clearance_statistics
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Joint, Law
@@ -109,7 +109,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None 
     """
     run = run or run_simulation(mechanism, linkage, **options)
     clearance = run.clearance
-    summary = summarise(run) if run.cycles > run.discard else None
+    summary = clearance_statistics(run) if run.cycles > run.discard else None
     record: dict[str, Any] = {
         "joint": clearance.joint,
         "radial_clearance_mm": 1e3 * clearance.radius,

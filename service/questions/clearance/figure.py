@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ....model.arrays import Array
 from ....model.clearance.run import ClearanceRun, simulate
-from ....model.clearance.statistics import ClearanceSummary, summarise
+from ....model.clearance.statistics import ClearanceSummary, clearance_statistics
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -85,7 +85,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
         draw_panel(add_axes(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, has_x_title=row == 0)
     draw_panel(add_axes(figure, 8.3, 2.65, 3.75, 3.75), _journal_panel(curves, run.clearance.radius), system)
     if run.cycles > run.discard:
-        for row, line in enumerate(_statistics_lines(summarise(run))):
+        for row, line in enumerate(_statistics_lines(clearance_statistics(run))):
             write_text(figure, 7.95, 1.8 - 0.2 * row, format_text(line, system, printed=True))
     return figure
 

@@ -7,12 +7,17 @@ import numpy as np
 
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import Member, cycle_turns, member_machines, single_cylinder
+from ....model.machine.cylinders_as_machines import (
+    Member,
+    cycle_turns,
+    machines_of_arrangement,
+    single_cylinder_machine,
+)
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.panel_polynomials import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
-from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, Table, Text, column, named_number, number_list, remark_with_value, value_from_record
 from ..peaks import peak
 from ..record_types import Note, NullIfLocked, PeakAngle, Record, ShakingNumbers
@@ -57,7 +62,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     """
     shaft = multi_cylinder_cycle(mechanism, linkage)
     return {
-        "cylinders": [_single_cylinder(member, linkage) for member in member_machines(mechanism)],
+        "cylinders": [_single_cylinder(member, linkage) for member in machines_of_arrangement(mechanism)],
         "peak_torque_Nm": abs(shaft.peak.value),
         "peak_torque_angle_deg": _extreme_angle_deg(shaft.peak),
         "least_torque_Nm": shaft.least.value,
@@ -76,8 +81,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
         "rms_shaking_moment_Nm": shaft.rms_shaking_moment,
         "peak_rocking_couple_Nm": shaft.couple.value,
         "peak_rocking_couple_angle_deg": _extreme_angle_deg(shaft.couple),
-        "peak_shaking_force_of_one_N": peak(single_cylinder(mechanism), Signal.SHAKING_FORCE, linkage).value,
-        "peak_shaking_moment_of_one_Nm": peak(single_cylinder(mechanism), Signal.SHAKING_MOMENT, linkage).value,
+        "peak_shaking_force_of_one_N": peak(single_cylinder_machine(mechanism), Signal.SHAKING_FORCE, linkage).value,
+        "peak_shaking_moment_of_one_Nm": peak(single_cylinder_machine(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
 
 
@@ -129,7 +134,7 @@ def blocks(numbers: Cylinders) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return total torque, shaking force and shaking moment over a revolution, with the torque of each cylinder."""
-    theta = sampled_turn(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
+    theta = sampled_crank_angles(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
     degrees, now = np.degrees(theta), multi_cylinder_curves(mechanism, linkage, theta)
     single_lines = [Line("each" if k == 0 else "", degrees, torque, FAINT) for k, torque in enumerate(now.torques)]
     together = Line("together", degrees, now.torque)

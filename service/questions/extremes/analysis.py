@@ -8,7 +8,7 @@ import numpy as np
 from ....model.cycle.self_locking import locking_reason
 from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import cycle_turns
+from ....model.machine.cylinders_as_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.machine_needs import ONE_TIMING
@@ -20,7 +20,7 @@ from ....objectives.tables.curve_extremes import (
     defined_curves,
 )
 from ....objectives.tables.cycle_curves import KINDS
-from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import (
     Block,
     NamedNumber,
@@ -187,7 +187,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """
     extremes = {extreme_curve.name: extreme_curve for extreme_curve in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _minimum_and_maximum(extremes[name])]
-    theta = sampled_turn(
+    theta = sampled_crank_angles(
         crank_angles_of_cuts(mechanism, linkage),
         [angle for angle in marked if math.isfinite(angle)],
         turns=cycle_turns(mechanism),

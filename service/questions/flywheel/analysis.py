@@ -140,7 +140,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
     def run(flywheel: float) -> SteadyRunning | None:
         try:
             if mechanism.drive is None:
-                return runner.under_constant_torque(flywheel)
+                return runner.run_under_constant_torque(flywheel)
             return runner.run_under_drive(replace(mechanism.drive, flywheel=flywheel))
         except InputError:
             return None

@@ -10,12 +10,12 @@ from ....model.cycle.cycle import breakpoints, cycle, cycle_energies
 from ....model.cycle.locked_angles import locking_verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Friction
-from ....model.machine.cylinder_machines import cycle_turns, is_treated_as_shaft, single_cylinder
+from ....model.machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, single_cylinder_machine
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import torque_averages
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
-from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import (
     Block,
     NamedNumber,
@@ -81,7 +81,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     Undefined values are None: torques and energies of a linkage that locks, and the efficiency if the load does no net
     work.
     """
-    has_several, mechanism = is_treated_as_shaft(mechanism), single_cylinder(mechanism)
+    has_several, mechanism = has_cylinders_or_speed_profile(mechanism), single_cylinder_machine(mechanism)
     friction, locking = mechanism.friction, locking_verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.friction_circle_radius + friction.slider_pin.friction_circle_radius) / float(linkage.rod)
@@ -175,12 +175,12 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
 
     Torque and force are missing at angles where friction locks the linkage.
     """
-    mechanism = single_cylinder(mechanism)
+    mechanism = single_cylinder_machine(mechanism)
     smooth = replace(mechanism, friction=Friction())
     locking = locking_verdict(mechanism, linkage)
     ends = [end for span in locking.locked for end in span]
     turns = cycle_turns(mechanism)
-    theta = sampled_turn(breakpoints(smooth if locking.locks else mechanism, linkage), ends, turns=turns)
+    theta = sampled_crank_angles(breakpoints(smooth if locking.locks else mechanism, linkage), ends, turns=turns)
     degrees = np.degrees(theta)
     with_it, frictionless = (cycle(machine, linkage, theta) for machine in (mechanism, smooth))
     margin, least = float(locking.margin), float(linkage.least_transmission_angle)

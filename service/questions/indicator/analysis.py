@@ -9,11 +9,11 @@ import numpy as np
 from ....model.cycle.gas_work import burning_end_angle, cylinder_loads, indicator_diagram, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import cycle_turns
+from ....model.machine.cylinders_as_machines import cycle_turns
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
-from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, NamedNumber, number_list, value_from_record
 from ..record_types import Note, Record
 
@@ -60,7 +60,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     """
     records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
-        curve = indicator_diagram(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
+        curve = indicator_diagram(mechanism, linkage, load, sampled_crank_angles(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
         least, greatest = float(curve.volume.min()), float(curve.volume.max())
@@ -104,7 +104,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     for style, (place, load) in enumerate(_require_cylinders(mechanism)):
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
-        theta = sampled_turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
+        theta = sampled_crank_angles(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator_diagram(mechanism, linkage, load, theta)
         # Closed curve: the diagram ends where it began.
         volume, pressure = (np.append(values, values[0]) for values in (curve.volume, curve.pressure))

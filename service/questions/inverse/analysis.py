@@ -13,7 +13,7 @@ from ....model.linkage.inverse_kinematics import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_point_angles, require_swing, swing_between_crank_angles
-from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, kind_of_key
+from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, name_and_kind_of_key
 from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
 from ..record_types import Note, Record
 
@@ -77,7 +77,9 @@ def numbers(
         solutions = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
         if not solutions:
-            reversals = (angle for dead in dead_point_angles(swinging) for angle in swing.angles_within(dead))
+            reversals = (
+                angle for dead in dead_point_angles(swinging) for angle in swing.equal_angles_within_swing(dead)
+            )
             angles = (swing.start, swing.end, *reversals)
             places = sorted(1e3 * float(swinging.at(angle).slider_position) for angle in angles)
             raise AssemblyError(
@@ -116,7 +118,9 @@ def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> t
     """Return the solutions within a swing between crank angles, with angles in its range."""
     within_swing = []
     for solution in solutions:
-        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.angles_within(solution.crank_angle + near)]
+        angles = [
+            at for near in (0.0, _NEAR, -_NEAR) for at in swing.equal_angles_within_swing(solution.crank_angle + near)
+        ]
         within_swing += [replace(solution, crank_angle=angles[0])] if angles else []
     return tuple(sorted(within_swing, key=lambda solution: solution.crank_angle))
 
@@ -129,7 +133,7 @@ def blocks(record: CrankAngles) -> list[Block]:
     """Return the slider's motion and the crank angles, in human-readable form."""
     motion = {key: value_from_record(record, key) for key in _GIVEN}
     motion_texts = [
-        words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)
+        words(f"{name_and_kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)
         for key, value in motion.items()
         if value.number is not None
     ]

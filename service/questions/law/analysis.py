@@ -9,7 +9,7 @@ import numpy as np
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.motion_law.motion_law import cam_table
+from ....model.motion_law.motion_law import cam_table_of_turn
 from ....model.transient.crank_equation import TURN
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ANGULAR_SPEED, SPEED, TORQUE, Kind, System
@@ -18,7 +18,7 @@ from ....optimise.motion_law.law_limits import LawRequest
 from ....optimise.motion_law.optimal_law import OptimalLaw, optimal_law
 from ....optimise.problem.problem import Problem
 from ...designs.display_units import convert_rows, row_without_noise
-from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, NamedNumber, joined, named_number, note, number_list, remark_with_value, sentence
 from ...render.numerals import format_number
 from ...runs.result import Row
@@ -161,7 +161,7 @@ def _objective_text(objective: LawObjective) -> str:
 
 def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **options: Any) -> list[dict[str, Any]]:
     """Return the rows of the cam table."""
-    table = cam_table(optimum.law)
+    table = cam_table_of_turn(optimum.law)
     rows = zip(table.time, table.crank_angle, table.speed, table.acceleration, strict=True)
     return convert_rows(
         [
@@ -180,7 +180,7 @@ def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **o
 def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Problem, **options: Any) -> PanelFigure:
     """Return plots of speed, torque and slider speed against crank angle, for the law and for constant speed."""
     law = optimum.law
-    theta = sampled_turn(law.turn.cell_start_angles)
+    theta = sampled_crank_angles(law.turn.cell_start_angles)
     now = speed_profile_curves(law.turn.machine, linkage, theta, law.crank_motion)
     even = speed_profile_curves(_at_constant_speed(optimum), linkage, theta)
     degrees = np.degrees(theta)

@@ -11,8 +11,19 @@ from ....model.machine.clearance import RigidLink
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.swing_summary import LeverPoint, LeverSummary, summarise_swing
-from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind, kind_of_key
-from ...designs.design_curves import lever_rows
+from ....objectives.kinds import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    POWER,
+    PRESSURE,
+    RATIO,
+    SPEED,
+    VOLUME_FLOW,
+    Kind,
+    name_and_kind_of_key,
+)
+from ...designs.design_curves import rows_of_lever_curves
 from ...designs.display_units import convert_rows
 from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, sentence, value_from_record, words
 from ..record_types import Keys, Note
@@ -211,7 +222,7 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
     for key in keys:
         if record[key] is not None and not key.startswith("fitting"):
             name, value, _ = named_number(record, key)
-            lines.append((name, value, _place_text(record, kind_of_key(key)[0])))
+            lines.append((name, value, _place_text(record, name_and_kind_of_key(key)[0])))
     found = number_list(f"Lever moved by a cylinder that turns, {how}", lines)
     if record["fitting_lesser_mm"] is not None:
         crank, frame = ("lesser", "greater") if record["crank_mm"] < record["frame_mm"] else ("greater", "lesser")
@@ -239,7 +250,7 @@ def curves(
     mechanism: Mechanism, linkage: Linkage, *, units: System, request: LeverRequest, **_: Any
 ) -> list[dict[str, Any]]:
     """Return rows of the curves from start to end, at evenly spaced times."""
-    return convert_rows(lever_rows(request.machine, request.swing), units)
+    return convert_rows(rows_of_lever_curves(request.machine, request.swing), units)
 
 
 def figure(

@@ -71,7 +71,7 @@ def lever_request(
     given = {name: inputs[key] for key, name in _CYLINDER.items() if key in inputs}
     cylinder = replace(_cylinder_of_job(mechanism, swing), **given)
     shortest, longest = sorted(float(sizes.cylinder_length(angle)) for angle in (lever_swing.start, lever_swing.end))
-    closed, _ = cylinder.closed_and_stroke(longest - shortest) or (shortest, None)
+    closed, _ = cylinder.closed_length_and_stroke(longest - shortest) or (shortest, None)
     machine = LeverMachine(
         sizes=sizes,
         lever=_lever(design, labels, inputs),

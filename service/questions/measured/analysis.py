@@ -8,14 +8,14 @@ import numpy as np
 
 from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import cycle_turns
+from ....model.machine.cylinders_as_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import ANGLE, count_with_noun, kind_of_key
-from ....objectives.tables.curve_deviation import Deviation, deviations
+from ....objectives.kinds import ANGLE, count_with_noun, name_and_kind_of_key
+from ....objectives.tables.curve_deviation import Deviation, curve_deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.measured_curves import Measured
-from ...figures.panel_figure import DASHED, SAMPLES, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import DASHED, SAMPLES, Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import (
     Block,
     Sentence,
@@ -73,7 +73,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> De
     root mean square, left_rms. None stands for values that friction leaves undetermined, and for shifts that the
     samples do not determine.
     """
-    found_deviations = deviations(mechanism, linkage, measured.crank_angle, measured.values)
+    found_deviations = curve_deviations(mechanism, linkage, measured.crank_angle, measured.values)
     return {
         "rows": len(measured.crank_angle),
         "understood": measured.understood,
@@ -138,7 +138,7 @@ def blocks(numbers: Deviations) -> list[Block]:
 
 def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
     """Return a number of a curve by its name without unit. look: further fields of `Value`."""
-    return value_from_record(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
+    return value_from_record(entry, next(key for key in entry if name_and_kind_of_key(key)[0] == name), **look)
 
 
 def file_notes(numbers: Mapping[str, Any]) -> list[str]:
@@ -161,7 +161,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
         _deviation_panel(
             deviation, _computed_curves(mechanism, linkage, deviation), degrees, measured.values[deviation.name]
         )
-        for deviation in deviations(mechanism, linkage, measured.crank_angle, measured.values)
+        for deviation in curve_deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
     subtitle = words(
         "{sizes}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation",
@@ -175,7 +175,7 @@ def _computed_curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviatio
 
     def line(style: int, angle: float, value: float) -> Line:
         turns = cycle_turns(mechanism)
-        theta = sampled_turn(crank_angles_of_cuts(mechanism, linkage) - angle, turns=turns)
+        theta = sampled_crank_angles(crank_angles_of_cuts(mechanism, linkage) - angle, turns=turns)
         at = np.mod(theta + angle, turns * 2.0 * np.pi)
         (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == deviation.name)
         return Line("", np.degrees(theta), curve - value, style=style)

@@ -14,16 +14,16 @@ from ....model.cycle.multi_cylinder import multi_cylinder_curves, shaking_curves
 from ....model.cycle.self_locking import locking_margin
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Friction
-from ....model.machine.cylinder_machines import TURN, cycle_turns, cylinder_machines
+from ....model.machine.cylinders_as_machines import TURN, cycle_turns, machine_of_each_cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import signal_averages, torque_averages
 from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve
-from ....model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
+from ....model.signals.panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.machine_needs import SPEED
-from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none
 from ..peaks import lengths_row, peak
@@ -101,13 +101,14 @@ def _least_reflected_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[fl
     ]
     heights, angles = (np.array(part) for part in zip(*((size - at.fun, at.x) for at in minima), strict=True))
     first = minima[int(index_of_first_maximum(heights, angles, TURN))]
-    return float(min(at.fun for at in minima)), angle_in_cycle(float(first.x), TURN)
+    return float(min(at.fun for at in minima)), wrap_into_cycle(float(first.x), TURN)
 
 
 def _reflected_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     """Return the moving inertia of all cylinders at crank angles (n,), rad."""
     curves = (
-        shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinder_machines(mechanism)
+        shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead)
+        for cylinder in machine_of_each_cylinder(mechanism)
     )
     return sum(cylinder.reflected_inertia for cylinder in curves)
 
@@ -133,7 +134,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     design = lengths_row(linkage)
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     turns = cycle_turns(mechanism)
-    theta = sampled_turn(
+    theta = sampled_crank_angles(
         breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns
     )
     degrees = np.degrees(theta)

@@ -10,14 +10,14 @@ from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cyl
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement
-from ....model.machine.cylinder_machines import member_machines
+from ....model.machine.cylinders_as_machines import machines_of_arrangement
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....objectives.flow import FLOW, FLOW_RIPPLE, liquid_pumps
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
 from ....objectives.peak_torque import MEAN_TORQUE, PEAK_TORQUE
 from ....objectives.quantity import Quantity
-from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, named_number, number_list
 from ..peaks import lengths_row
 from ..record_types import Note, Record
@@ -74,7 +74,7 @@ def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: Array) -> list[A
     pumps = [
         (pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in liquid_pumps(mechanism).values()
     ]
-    for member in member_machines(mechanism):
+    for member in machines_of_arrangement(mechanism):
         rate = linkage.at(theta + member.lead, speed=mechanism.speed).slider_velocity * mechanism.sign
         flows.append(sum((area * np.maximum(sign * rate, 0.0) for area, sign in pumps), np.zeros(len(theta))))
     return flows
@@ -97,7 +97,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return the flow per cylinder and in total, for a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
     alone = _with_pressures_only(shaft)
-    theta = sampled_turn(multi_cylinder_breakpoints(alone, linkage))
+    theta = sampled_crank_angles(multi_cylinder_breakpoints(alone, linkage))
     degrees, panels = np.degrees(theta), []
     if _has_ripple(mechanism):
         flows = _flow_curves(shaft, linkage, theta)

@@ -195,7 +195,7 @@ def _rounding_blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list
             (title, unit, value_from_record(original, key), *(value_from_record(design, key) for design in designs))
         )
         if key in objectives:
-            stem = objectives[key].stem
+            stem = objectives[key].column_stem
             changes = (value_from_record(design, f"change_{key}", digits=3, sign=True) for design in designs)
             rows.append(("  change", unit, "", *changes))
             rows.append(("", "%", "", *(_format_loss(design[f"change_{stem}_percent"]) for design in designs)))

@@ -8,9 +8,9 @@ import numpy as np
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Bar
-from ....model.machine.cylinder_machines import TURN, cycle_turns
+from ....model.machine.cylinders_as_machines import TURN, cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....model.signals.panel_polynomials import angle_in_cycle
+from ....model.signals.panel_polynomials import wrap_into_cycle
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody
@@ -82,7 +82,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     for name, bar in bars.items():
         for pin, (stress, angle) in eyes[name].items():
             bar[f"eye_at_{pin}_MPa"] = finite_or_none(1e-6 * stress)
-            bar[f"eye_at_{pin}_at_crank_angle_deg"] = finite_or_none(math.degrees(angle_in_cycle(angle, cycle)))
+            bar[f"eye_at_{pin}_at_crank_angle_deg"] = finite_or_none(math.degrees(wrap_into_cycle(angle, cycle)))
     return record | {"violated": violations_of(mechanism, record), "bars": bars}
 
 
@@ -109,7 +109,7 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
             value = math.nan
         extremes |= {
             f"greatest_{sign}_MPa": finite_or_none(1e-6 * value),
-            f"greatest_{sign}_at_crank_angle_deg": finite_or_none(math.degrees(angle_in_cycle(angles[place], cycle))),
+            f"greatest_{sign}_at_crank_angle_deg": finite_or_none(math.degrees(wrap_into_cycle(angles[place], cycle))),
             f"greatest_{sign}_from_crank_pin_mm": finite_or_none(1e3 * share * float(getattr(linkage, name))),
         }
     return extremes

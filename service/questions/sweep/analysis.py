@@ -8,7 +8,7 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.kinds import ANGULAR_SPEED, LENGTH, kind_of_key
+from ....objectives.kinds import ANGULAR_SPEED, LENGTH, name_and_kind_of_key
 from ....objectives.quantity import Quantity
 from ....objectives.registry import FACTS
 from ....objectives.tables.sensitivity import Axis, Parameter, sweep
@@ -81,7 +81,7 @@ def _sweep_table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence
         return Value(number / quantity.unit.factor, quantity.kind, missing="-")
 
     keys = [f"{axis.parameter}_{'rpm' if axis.parameter == 'speed' else 'mm'}" for axis in axes]
-    heads = [column(axis.parameter, kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
+    heads = [column(axis.parameter, name_and_kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
     heads += [column(quantity.title, quantity.kind) for quantity in quantities]
     cells = (
         (*(value_from_record(row, key) for key in keys), *(value(row, quantity) for quantity in quantities))

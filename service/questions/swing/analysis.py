@@ -9,20 +9,29 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism, Window
-from ....model.swing.summary import SwingRequest, SwingSummary, resolve_swing, summarise
+from ....model.swing.summary import SwingRequest, SwingSummary, resolve_swing, summarise_swing
 from ....model.swing.swing import Swing
 from ....model.swing.swing_cycle import SwingCycle, SwingPoint
 from ....model.swing.swing_types import Driver, Law, Side
-from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE, kind_of_key
+from ....objectives.kinds import (
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    POWER,
+    TORQUE,
+    name_and_kind_of_key,
+)
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.swing_curves import (
-    drive_kind,
-    driven_error_kind,
     driven_side_name,
     force_magnitudes,
+    kind_of_drive_effort,
+    kind_of_driven_side_error,
     motion_and_drive_curves,
 )
-from ...designs.design_curves import swing_rows
+from ...designs.design_curves import rows_of_swing_curves
 from ...designs.display_units import convert_rows
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, value_from_record, words
 from ...render.extremes_table import extremes_table
@@ -127,7 +136,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> SwingNumb
     Raises `AssemblyError` if the linkage does not close, and the errors of `asked_swing`.
     """
     machine, swing = _swing_from_inputs(mechanism, **options)
-    return swing_record(machine, summarise(machine, linkage, swing))
+    return swing_record(machine, summarise_swing(machine, linkage, swing))
 
 
 def _swing_from_inputs(
@@ -144,7 +153,7 @@ def _swing_from_inputs(
 def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
     """Return rows of the curves for both strokes."""
     machine, swing = _swing_from_inputs(mechanism, **options)
-    return convert_rows(swing_rows(machine, linkage, swing), units)
+    return convert_rows(rows_of_swing_curves(machine, linkage, swing), units)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> Figure:
@@ -158,7 +167,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
 def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
     """Return the metric numbers of a swing; null if undefined, with notes that give the reason."""
     swing, linkage = summary.swing, summary.linkage
-    drive, error = drive_kind(swing).metric, driven_error_kind(swing).metric
+    drive, error = kind_of_drive_effort(swing).metric, kind_of_driven_side_error(swing).metric
     record: dict[str, Any] = {
         **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
         "branch": linkage.branch,
@@ -201,7 +210,7 @@ def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, An
     strokes = SwingCycle(mechanism, summary.linkage, summary.swing)
     entries: dict[str, Any] = {}
     for curve in (*motion_and_drive_curves(summary.swing), *force_magnitudes()):
-        least, greatest = strokes.value_range(curve.attribute)
+        least, greatest = strokes.range_of_curve(curve.attribute)
         acts = curve.kind not in (FORCE, TORQUE, POWER) and curve.attribute != "driven_error"
         if curve.name == "crank_angle" or (not acts and least.value == greatest.value == 0.0):
             continue
@@ -254,7 +263,7 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
     """Return the numbers of a metric record except its extremes, each with its location."""
     lines: list[NamedNumber] = []
     for key, value in record.items():
-        name, _ = kind_of_key(key)
+        name, _ = name_and_kind_of_key(key)
         is_excluded = isinstance(value, str | list | dict | bool) or key == "duration_s"
         if not is_excluded and "_at_crank_angle" not in name and "_at_slider_position" not in name:
             lines.append(

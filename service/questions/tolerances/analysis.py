@@ -16,7 +16,12 @@ from ....model.signals.first_peak import first_peaks
 from ....model.signals.signals import Signal
 from ....model.tolerance.error_distributions import SOURCES, limits_of_sources, source_influences
 from ....model.tolerance.exact_worst_case import fractions_of_sum, worst_position_error
-from ....model.tolerance.monte_carlo import simulate, summarise_sample, variance_contributions, yield_within
+from ....model.tolerance.monte_carlo import (
+    simulate_machines_with_errors,
+    summarise_sample,
+    variance_contributions,
+    yield_within,
+)
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words
 from ..peaks import lengths_row
@@ -116,7 +121,7 @@ def numbers(
     parts = (np.abs(source_influences(mechanism, linkage, at)) * source_limits[:, None])[:, :1]
     of_worst = 100.0 * fractions_of_sum(parts)[:, 0]
     of_variance = 100.0 * fractions_of_sum(variance_contributions(mechanism, linkage, at))[:, 0]
-    simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
+    simulation = simulate_machines_with_errors(mechanism, linkage, samples=samples, seed=seed)
     spread = (
         summarise_sample(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     )

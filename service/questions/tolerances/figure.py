@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.tolerance.error_distributions import SOURCES, limits_of_sources
 from ....model.tolerance.exact_worst_case import fractions_of_sum, position_deviation_extremes
-from ....model.tolerance.monte_carlo import simulate, variance_contributions
+from ....model.tolerance.monte_carlo import simulate_machines_with_errors, variance_contributions
 from ....objectives.kinds import LENGTH, System
 from ...figures import style
 from ...render.numerals import title_with_unit
@@ -50,7 +50,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         exact = position_deviation_extremes(mechanism, linkage, theta)
         least, greatest = exact.least, exact.greatest
     linear = cycle(mechanism, linkage, theta)
-    simulated = simulate(mechanism, linkage, theta, samples=samples, seed=seed)
+    simulated = simulate_machines_with_errors(mechanism, linkage, theta, samples=samples, seed=seed)
     has_tolerance = limits_of_sources(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),

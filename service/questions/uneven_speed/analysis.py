@@ -10,11 +10,11 @@ from ....model.cycle.crank_speed import speed_knots
 from ....model.cycle.cycle import breakpoints
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import cycle_turns
+from ....model.machine.cylinders_as_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
-from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, Value, joined, named_number, number_list, remark_with_value
 from ..record_types import Keys, Note, NullIfLocked, PeakAngle
 
@@ -122,7 +122,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return speed, torque and shaking force over a revolution, with the profile and at constant speed."""
     _require_profile(mechanism)
     knots = np.mod(speed_knots(mechanism), 2.0 * np.pi)
-    theta = sampled_turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
+    theta = sampled_crank_angles(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
     degrees = np.degrees(theta)
     now, even = (
         speed_profile_curves(machine, linkage, theta) for machine in (mechanism, replace(mechanism, speed_profile=None))

@@ -6,7 +6,7 @@ from typing import Any
 
 from ....objectives.kinds import System, metric_unit_in
 from ....optimise.decisions.wish import Wishes
-from ....optimise.decisions.wishes import Outcome, Wished
+from ....optimise.decisions.wishes import ObjectiveOutcome, Wished
 from ....optimise.front.front import ParetoFront
 from ...designs.display_units import convert_row
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, value_from_record, words
@@ -20,7 +20,7 @@ def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **
 
     Raises the errors of `optimise.decisions.wish.wish`.
     """
-    return wish_result(Wishes(front).wish(at, row=row), at)
+    return wish_result(Wishes(front).design_nearest_to_wishes(at, row=row), at)
 
 
 def wish_result(wished: Wished, at: Mapping[str, object]) -> Answer:
@@ -85,7 +85,7 @@ def _wish_blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
     ]
 
 
-def _outcome_record(outcome: Outcome, units: System) -> dict[str, Any]:
+def _outcome_record(outcome: ObjectiveOutcome, units: System) -> dict[str, Any]:
     quantity = outcome.quantity
     unit, factor = metric_unit_in(quantity.unit.symbol, units)
     numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}

@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.motion_law.law_turn import LawTurn
-from slidercrank.model.motion_law.motion_law import CamTable, MotionLaw, cam_table
+from slidercrank.model.motion_law.motion_law import CamTable, MotionLaw, cam_table_of_turn
 from slidercrank.model.transient.crank_equation import CrankEquation
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from tests.model.law_cases import random_case
@@ -39,7 +39,7 @@ def random_law(seed: int) -> MotionLaw:
     size = float(np.abs(turn.terms.load).max())
     waves = random.uniform(-0.3, 0.3, (2, 3)) * size
     phases = np.arange(1, 4)[:, None] * turn.passed
-    law = MotionLaw.made_periodic(turn, waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0)
+    law = MotionLaw.from_torque_made_periodic(turn, waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0)
     mean = 0.5 * float(turn.terms.inertia.mean()) * machine.speed**2
     return replace(law, start_energy=mean / 3.0 - float(law.node_energies.min()))
 
@@ -71,7 +71,7 @@ def test_the_acceleration_is_the_speed_times_its_slope(law: MotionLaw) -> None:
 def test_the_drive_does_the_work_that_the_loads_take(law: MotionLaw) -> None:
     judged = speed_profile_cycle(law.turn.machine, law.turn.linkage, law.crank_motion)
     scale = TURN * float(np.abs(law.turn.terms.load).max())
-    assert judged.work == pytest.approx(law.turn.load_work, abs=1e-10 * scale)
+    assert judged.work == pytest.approx(law.turn.work_absorbed_by_loads, abs=1e-10 * scale)
     assert judged.period == pytest.approx(law.period, rel=1e-10)
     assert judged.rms_torque == pytest.approx(law.rms_torque, rel=1e-8)
     assert judged.peaks["torque"].value == pytest.approx(np.abs(law.torque).max(), rel=1e-9)
@@ -80,7 +80,7 @@ def test_the_drive_does_the_work_that_the_loads_take(law: MotionLaw) -> None:
 def test_forward_dynamics_under_the_torque_of_the_law_give_the_law(law: MotionLaw) -> None:
     equation = CrankEquation(law.turn.machine, law.turn.linkage)
     reached, way = None, law.turn.way
-    for span in equation.spans_of_cycle(way):
+    for span in equation.spans_in_passing_order(way):
         first, last = (span.low, span.high) if way > 0.0 else (span.high, span.low)
         reached = float(law.speed_at(np.array([first]))[0]) ** 2 if reached is None else reached
 
@@ -111,7 +111,7 @@ def test_times_are_integrals_of_the_inverse_speed_and_are_inverted(law: MotionLa
 
 def test_without_loads_a_constant_kinetic_energy_needs_no_torque() -> None:
     turn = LawTurn(replace(BARE, gravity=(0.0, 0.0)), LINKAGE)
-    law = MotionLaw.made_periodic(turn, np.zeros(len(turn.width)), 3.0)
+    law = MotionLaw.from_torque_made_periodic(turn, np.zeros(len(turn.width)), 3.0)
     judged = speed_profile_cycle(turn.machine, LINKAGE, law.crank_motion)
     assert judged.fluctuation > 0.1
     constant = speed_profile_cycle(turn.machine, LINKAGE).peaks["torque"].value
@@ -140,7 +140,7 @@ def read_back(table: CamTable, time: np.ndarray[Any, Any]) -> tuple[np.ndarray[A
 
 
 def test_the_cam_table_gives_the_torque_to_a_thousandth(law: MotionLaw) -> None:
-    table = cam_table(law)
+    table = cam_table_of_turn(law)
     assert len(table.time) > 1000
     assert np.all(np.diff(table.time) >= 0.0)
     assert table.time[-1] == pytest.approx(law.period)

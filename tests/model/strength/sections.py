@@ -13,7 +13,13 @@ from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Bar
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.strength.section_forces import CRANK, ROD, Stress, stress_along, stress_at_length_fraction
+from slidercrank.model.strength.section_forces import (
+    CRANK,
+    ROD,
+    Stress,
+    stress_at_length_fraction,
+    stress_coefficients_of_link,
+)
 from tests.model.cases import STRENGTH, Array, linkage_of, random_machine
 
 
@@ -88,7 +94,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     masses = tuple(own for own in mechanism.loads if own.is_moving_mass)
     design = derived_design(replace(mechanism, loads=masses), linkage)
     moved = motion(np.sin(theta), np.cos(theta), design.r, design.l, design.e, design.branch)
-    c = stress_along(
+    c = stress_coefficients_of_link(
         ROD if part == "rod" else CRANK,
         np.sin(theta),
         np.cos(theta),

@@ -16,7 +16,7 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.forces import pin_distance_from_crank_line
 from slidercrank.model.swing.law import law_spline_pieces, travel_speed_acceleration
-from slidercrank.model.swing.summary import summarise
+from slidercrank.model.swing.summary import summarise_swing
 from slidercrank.model.swing.swing import Swing, swing_between_crank_angles
 from slidercrank.objectives.tables.swing_columns import swing_quantities
 from tests.model.cases import Array
@@ -71,7 +71,7 @@ def test_places_of_the_slider_state_the_same_swing() -> None:
         assert np.abs(off).max() < 1e-9
         if abs(made.start - angles.start) > 1.0:
             continue  # a spring on the crank counts turns
-        found, wanted = summarise(machine, linkage, places), summarise(machine, linkage, angles)
+        found, wanted = summarise_swing(machine, linkage, places), summarise_swing(machine, linkage, angles)
         assert found.peak_drive.value == pytest.approx(wanted.peak_drive.value, rel=1e-7)
         assert found.energy_forward == pytest.approx(wanted.energy_forward, rel=1e-7, abs=1e-7)
         assert found.travel == pytest.approx(abs(places.end - places.start), rel=1e-12)
@@ -91,7 +91,7 @@ def test_quantities_and_slopes_of_many_designs(of: str) -> None:
         free = replace(machine, varying=(item,))
         design = design_of(linkage)
         wide = np.concatenate([design, [[swing.start]]], axis=1)
-        one = summarise(machine, linkage, swing)
+        one = summarise_swing(machine, linkage, swing)
         for quantity in swing_quantities(swing):
             if quantity.unmet_need(machine, "equal"):
                 continue
@@ -125,7 +125,7 @@ def test_places_that_no_linkage_reaches_are_refused() -> None:
     machine, linkage = Mechanism(), Linkage(0.1, 0.3, 0.02)
     for start, end, words in ((0.25, 0.45, "between 200 and 400 mm"), (-0.35, 0.3, "crossed branch there")):
         with pytest.raises(AssemblyError, match=words):
-            summarise(machine, linkage, Swing(start=start, end=end, stated_for="slider"))
+            summarise_swing(machine, linkage, Swing(start=start, end=end, stated_for="slider"))
     with pytest.raises(InputError, match="two different slider positions"):
         Swing(start=0.3, end=0.3, stated_for="slider")
 

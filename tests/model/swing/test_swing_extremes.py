@@ -23,13 +23,13 @@ def test_extremes_of_curves_are_those_of_dense_samples_of_both_ways(friction: bo
     share, backs = np.linspace(0.0, 1.0, 4001), set()
     for mechanism, linkage, swing in random_swings(6, seed=83, friction=friction):
         over = SwingCycle(mechanism, linkage, swing)
-        if over.first_locked() is not None:
+        if over.first_lockable_point() is not None:
             continue
         ways = [swing_curves(mechanism, linkage, swing, share, back=back) for back in (False, True)]
         for name in CURVES:
             values = np.concatenate([getattr(way, name) for way in ways])
             span = float(np.ptp(values)) or 1.0
-            least, most = over.value_range(name)
+            least, most = over.range_of_curve(name)
             assert least.value <= values.min() + 1e-9 * span, name
             assert most.value >= values.max() - 1e-9 * span, name
             for at in (least, most):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.swing.peaks import SwingPeaks, negated_least_drive_peaks, swing_peaks
+from slidercrank.model.swing.peaks import SwingPeaks, peaks_of_negated_least_drive, swing_peaks
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_states import DRIVE, ERROR, POWER
 from tests.case_count import case_count
@@ -20,7 +20,7 @@ SEARCHES: dict[str, Search] = {
     "drive": lambda machine, swing, designs: swing_peaks(machine, swing, DRIVE, designs, gradients=True),
     "power": lambda machine, swing, designs: swing_peaks(machine, swing, POWER, designs, limit=1),
     "error": lambda machine, swing, designs: swing_peaks(machine, swing, ERROR, designs, gradients=True),
-    "least": lambda machine, swing, designs: negated_least_drive_peaks(
+    "least": lambda machine, swing, designs: peaks_of_negated_least_drive(
         machine, swing, designs, back=True, gradients=True
     ),
 }

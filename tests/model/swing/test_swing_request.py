@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism, Start
-from slidercrank.model.swing.summary import SwingRequest, resolve_swing, summarise
+from slidercrank.model.swing.summary import SwingRequest, resolve_swing, summarise_swing
 from slidercrank.model.swing.swing import Swing
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem
@@ -39,7 +39,7 @@ def free(job: dict[str, object]) -> Problem:
 def test_two_places_are_the_swing_between_the_angles_that_reach_them() -> None:
     sides = set()
     for mechanism, linkage, swing in random_swings(30, seed=91, driver="slider"):
-        expected = summarise(mechanism, linkage, swing)
+        expected = summarise_swing(mechanism, linkage, swing)
         ways = expected.slider_positions
         asked = SwingRequest(
             slider_start=ways[0], slider_end=ways[1], driver="slider", law=swing.law, duration=swing.duration
@@ -50,7 +50,7 @@ def test_two_places_are_the_swing_between_the_angles_that_reach_them() -> None:
         for side in ("left", "right"):
             machine, found = resolve_swing(mechanism, None, replace(asked, side=side))
             try:
-                made = summarise(machine, linkage, found)
+                made = summarise_swing(machine, linkage, found)
             except InputError:  # not on this branch with the crank pin there
                 continue
             turned = (made.crank_angles[0] - expected.crank_angles[0]) / (2.0 * np.pi)

@@ -20,8 +20,8 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, dead_point_angles, require_swing, without_inertia
+from slidercrank.model.swing.summary import summarise_swing
+from slidercrank.model.swing.swing import Swing, dead_point_angles, require_swing, slow_swing
 from slidercrank.model.swing.swing_types import Law
 from tests.model.bodies import bodies
 from tests.model.swing.swings import random_swings
@@ -50,7 +50,7 @@ def test_energy_of_the_drive_is_what_is_stored_and_done() -> None:
         loads = (StrokeForce(outward=force, inward=force), spring, table)
         machine = replace(drawn, loads=loads)
         own = require_swing(machine, linkage, swing)
-        found = summarise(machine, linkage, swing)
+        found = summarise_swing(machine, linkage, swing)
         ends = swing_curves(machine, own, swing, np.array([0.0, 1.0]))
         sizes = np.array([float(own.crank), float(own.rod), float(own.offset)])
         parts = bodies(machine, sizes)
@@ -81,7 +81,7 @@ def test_energy_of_the_drive_is_what_is_stored_and_done() -> None:
 def test_peaks_are_those_of_a_dense_sweep() -> None:
     share = np.linspace(0.0, 1.0, 20_001)
     for machine, linkage, swing in random_swings(25, seed=22, friction=True):
-        found = summarise(machine, linkage, swing)
+        found = summarise_swing(machine, linkage, swing)
         own = require_swing(machine, linkage, swing)
         ways = [swing_curves(machine, own, swing, share, back=back) for back in (False, True)]
         drive = np.concatenate([np.abs(way.drive) for way in ways])
@@ -107,7 +107,7 @@ def test_energy_with_every_load_is_that_of_a_fine_sum() -> None:
     for drawn, linkage, swing in random_swings(14, seed=24):
         turns = bool(linkage.rotates_fully)
         machine = replace(drawn, loads=(*drawn.loads, cylinder)) if turns else drawn
-        found = summarise(machine, linkage, swing)
+        found = summarise_swing(machine, linkage, swing)
         curves = swing_curves(machine, require_swing(machine, linkage, swing), swing, share)
         summed = float(np.trapezoid(curves.drive * curves.rate, share))
         size = float(np.abs(curves.drive * curves.rate).max())
@@ -117,11 +117,11 @@ def test_energy_with_every_load_is_that_of_a_fine_sum() -> None:
 def test_friction_costs_the_energy_that_both_ways_do_not_give_back() -> None:
     for machine, linkage, swing in random_swings(25, seed=23, friction=True):
         still = replace(machine, loads=())
-        found = summarise(still, linkage, without_inertia(swing))
+        found = summarise_swing(still, linkage, slow_swing(swing))
         if found.locked is not None:
             continue
         assert found.energy_forward + found.energy_back > 0.0
-        free = summarise(replace(still, friction=Friction()), linkage, without_inertia(swing))
+        free = summarise_swing(replace(still, friction=Friction()), linkage, slow_swing(swing))
         assert free.energy_forward + free.energy_back == pytest.approx(0.0, abs=1e-9 * abs(free.energy_forward) + 1e-12)
         assert free.stored == found.stored
         if found.efficiency is not None:
@@ -135,7 +135,7 @@ def test_a_column_stands_where_the_publication_says() -> None:
     own = require_swing(COLUMN, SUPPORT, OVER)
     angles = np.radians([float(row["crank_angle_deg"]) for row in rows])
     printed = np.array([float(row["slider_position_mm"]) for row in rows])
-    found = summarise(COLUMN, SUPPORT, OVER)
+    found = summarise_swing(COLUMN, SUPPORT, OVER)
     assert (1e3 * np.array(found.slider_positions)).tolist() == pytest.approx([printed[0], printed[-1]], abs=0.03)
     places = own.at(angles).slider_position
     share = (places - places[0]) / (places[-1] - places[0])
@@ -147,14 +147,14 @@ def test_a_column_stands_where_the_publication_says() -> None:
 def test_a_weight_on_a_massless_linkage_is_held_by_the_law_of_cosines() -> None:
     """The slider's force on a crank that carries a weight at its end: P x' = m g r cos(theta)."""
     machine = Mechanism(crank=RigidLink(mass=50.0, centre=1.4), gravity=(0.0, -9.81))
-    found = summarise(machine, SUPPORT, OVER)
+    found = summarise_swing(machine, SUPPORT, OVER)
     for force, degrees in ((found.drive_start[0], 11.16), (found.drive_end[0], 101.16)):
         theta = math.radians(degrees)
         phi = math.asin((-0.05 - 1.4 * math.sin(theta)) / 1.8)
         slope = -1.4 * math.sin(theta - phi) / math.cos(phi)
         assert force == pytest.approx(50.0 * 9.81 * 1.4 * math.cos(theta) / slope, rel=1e-12)
     assert not found.holds
-    held = summarise(replace(machine, friction=Friction(guide=8.0)), SUPPORT, OVER)
+    held = summarise_swing(replace(machine, friction=Friction(guide=8.0)), SUPPORT, OVER)
     assert held.holds
 
 
@@ -202,16 +202,16 @@ def test_swings_that_are_none_are_refused(given: dict[str, object], words: str) 
 def test_swings_that_cannot_be_made_are_refused() -> None:
     short = Linkage(1.4, 1.0, 0.2)
     with pytest.raises(AssemblyError, match="close over the whole swing"):
-        summarise(COLUMN, short, replace(OVER, driver="crank"))
+        summarise_swing(COLUMN, short, replace(OVER, driver="crank"))
     with pytest.raises(InputError, match=r"dead point|dead points"):
-        summarise(COLUMN, SUPPORT, replace(OVER, start=-0.5))
+        summarise_swing(COLUMN, SUPPORT, replace(OVER, start=-0.5))
     with pytest.raises(InputError, match="same branch"):
-        summarise(replace(COLUMN, branch="crossed"), SUPPORT, OVER)
+        summarise_swing(replace(COLUMN, branch="crossed"), SUPPORT, OVER)
     with pytest.raises(InputError, match="one linkage is possible at a time"):
-        summarise(COLUMN, Linkage([1.4, 1.5], 1.8, -0.05), OVER)
+        summarise_swing(COLUMN, Linkage([1.4, 1.5], 1.8, -0.05), OVER)
     spring = Spring(stiffness=100.0, datum="inner dead centre")
     with pytest.raises(InputError, match="measure it from the crank pivot"):
-        summarise(replace(COLUMN, loads=(spring,)), short, Swing(start=0.0, end=0.3))
+        summarise_swing(replace(COLUMN, loads=(spring,)), short, Swing(start=0.0, end=0.3))
 
 
 @pytest.mark.parametrize("law", ["slow", "harmonic", "trapezoid", "constant"])
@@ -223,7 +223,7 @@ def test_energy_near_a_dead_point_is_that_of_the_potential(near: float, law: Law
     dead = min(dead_point_angles(linkage), key=abs)
     duration = None if law == "slow" else 40.0
     swing = Swing(start=dead + math.radians(near), end=math.radians(80.0), driver="slider", law=law, duration=duration)
-    found = summarise(machine, linkage, swing)
+    found = summarise_swing(machine, linkage, swing)
     heights = [
         sum(part.mass * float(part.y(angle)) for part in bodies(machine, np.array([0.04, 0.1, 0.01])).values())
         for angle in (swing.start, swing.end)
@@ -242,14 +242,14 @@ def test_efficiency_is_of_friction_alone() -> None:
     for machine in (COLUMN, column):
         for law, duration in (("slow", None), ("constant", 0.5), ("harmonic", 1.0)):
             swing = replace(OVER, law=law, duration=duration)  # type: ignore[arg-type]
-            assert summarise(machine, SUPPORT, swing).efficiency == pytest.approx(1.0, abs=1e-9)
-            rubbed = summarise(replace(machine, friction=Friction(guide=0.1)), SUPPORT, swing).efficiency
+            assert summarise_swing(machine, SUPPORT, swing).efficiency == pytest.approx(1.0, abs=1e-9)
+            rubbed = summarise_swing(replace(machine, friction=Friction(guide=0.1)), SUPPORT, swing).efficiency
             assert rubbed is not None
             assert 0.5 < rubbed < 1.0
     even = Mechanism(crank=RigidLink(mass=1.0, centre=0.5), gravity=(0.0, -9.81))
     for driver in ("crank", "slider"):
         swing = Swing(start=math.radians(10.0), end=math.radians(170.0), driver=driver)
-        found = summarise(even, Linkage(0.5, 1.5), swing)
+        found = summarise_swing(even, Linkage(0.5, 1.5), swing)
         assert found.stored == found.energy_forward == 0.0
         assert found.efficiency is None
 
@@ -258,7 +258,7 @@ def test_a_place_that_may_lock_leaves_peaks_undefined() -> None:
     pin = Pin(radius=0.02, coefficient=0.5)
     machine = replace(COLUMN, friction=Friction(crank_pivot=pin, crank_pin=pin))
     linkage = Linkage(0.1, 0.3)
-    found = summarise(machine, linkage, Swing(start=math.radians(2.0), end=math.radians(60.0), driver="slider"))
+    found = summarise_swing(machine, linkage, Swing(start=math.radians(2.0), end=math.radians(60.0), driver="slider"))
     assert found.locked is not None
     bend = math.sin(found.locked.crank_angle + math.asin(0.1 * math.sin(found.locked.crank_angle) / 0.3))
     assert found.locked.share == 0.0
@@ -266,7 +266,7 @@ def test_a_place_that_may_lock_leaves_peaks_undefined() -> None:
     assert math.isnan(found.peak_drive.value)
     assert math.isnan(found.energy_forward)
     assert found.efficiency is None
-    later = summarise(machine, linkage, Swing(start=math.radians(60.0), end=math.radians(2.0), driver="slider"))
+    later = summarise_swing(machine, linkage, Swing(start=math.radians(60.0), end=math.radians(2.0), driver="slider"))
     assert later.locked is not None
     theta = later.locked.crank_angle
     edge = math.asin(math.sin(theta + math.asin(0.1 * math.sin(theta) / 0.3)))
@@ -274,10 +274,10 @@ def test_a_place_that_may_lock_leaves_peaks_undefined() -> None:
 
 
 def test_a_dashpot_holds_nothing_and_takes_nothing_slowly() -> None:
-    found = summarise(Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, OVER)
+    found = summarise_swing(Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, OVER)
     assert not found.holds
     assert (found.peak_drive.value, found.drive_start, found.stored, found.efficiency) == (0.0, (0.0, 0.0), 0.0, None)
-    moved = summarise(
+    moved = summarise_swing(
         Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, replace(OVER, law="harmonic", duration=1.0)
     )
     assert moved.energy_forward > 0.0
@@ -288,14 +288,14 @@ def test_crank_and_rod_on_each_other_are_refused() -> None:
     folded = Linkage(0.06, 0.06)
     asked = Swing(start=math.radians(100.0), end=math.radians(150.0), driver="slider")
     with pytest.raises(InputError, match="both folded"):
-        summarise(COLUMN, folded, asked)
-    other = summarise(COLUMN, folded, replace(asked, start=math.radians(20.0), end=math.radians(70.0)))
+        summarise_swing(COLUMN, folded, asked)
+    other = summarise_swing(COLUMN, folded, replace(asked, start=math.radians(20.0), end=math.radians(70.0)))
     assert math.isfinite(other.peak_drive.value)
 
 
 @pytest.mark.parametrize("driver", ["crank", "slider"])
 def test_a_linkage_that_weighs_nothing_takes_nothing(driver: str) -> None:
-    found = summarise(Mechanism(), SUPPORT, replace(OVER, driver=driver))  # type: ignore[arg-type]
+    found = summarise_swing(Mechanism(), SUPPORT, replace(OVER, driver=driver))  # type: ignore[arg-type]
     assert found.peak_drive.value == 0.0
     assert found.energy_forward == found.stored == 0.0
     assert found.efficiency is None

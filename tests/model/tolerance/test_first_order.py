@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
-from slidercrank.model.signals.fast_torque_and_error import is_supported, screened_maxima
+from slidercrank.model.signals.fast_torque_and_error import screened_maxima, supports_screening
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.error_distributions import limits_of_sources
@@ -109,12 +109,12 @@ def test_gradients_with_clearances_are_those_of_differences(signal: Signal) -> N
 
 def test_screening_is_consistent_with_clearances() -> None:
     designs, machine = random_designs(500, seed=84), with_gaps(SMOOTH)
-    assert is_supported(machine, Signal.POSITION_ERROR)
+    assert supports_screening(machine, Signal.POSITION_ERROR)
     fast = screened_maxima(machine, (Signal.POSITION_ERROR,), designs)[0]
     exact = find_peaks(machine, Signal.POSITION_ERROR, designs, limit=1)
     np.testing.assert_allclose(fast.values, exact.values[:, 0], rtol=1e-12)
-    assert not is_supported(machine, Signal.POSITION_ERROR_RSS)
-    assert is_supported(SMOOTH, Signal.POSITION_ERROR_RSS)
+    assert not supports_screening(machine, Signal.POSITION_ERROR_RSS)
+    assert supports_screening(SMOOTH, Signal.POSITION_ERROR_RSS)
 
 
 def test_limits_are_absolute_plus_share_of_the_size_of_the_dimension() -> None:

@@ -22,7 +22,7 @@ from slidercrank.model.tolerance.exact_worst_case import (
 )
 from slidercrank.model.tolerance.monte_carlo import (
     CHUNK,
-    simulate,
+    simulate_machines_with_errors,
     summarise_sample,
     variance_contributions,
     yield_within,
@@ -42,7 +42,7 @@ def test_standard_deviation_is_a_third_of_the_root_sum_square_for_limits_of_thre
         plain = dataclasses.replace(
             mechanism, tolerances=dataclasses.replace(mechanism.tolerances, clearances=Clearances())
         )
-        found = simulate(plain, linkage, TURN, samples=SAMPLES, seed=2)
+        found = simulate_machines_with_errors(plain, linkage, TURN, samples=SAMPLES, seed=2)
         expected = first_order_position_errors(plain, linkage, TURN)
         # A sample's standard deviation scatters by 1 / sqrt(2 n), 0.5 %; five of them. The second order adds to it by
         # its own size, at three limits' width.
@@ -57,7 +57,7 @@ def test_variance_is_the_sum_of_those_of_the_sources(shape: Shape, contact: Cont
     of = error_distribution(shape)
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in ((PUBLISHED, SUPPORT), CASES[3], (GAPPED, Linkage(0.14, 0.31, 0.06))):
-        found = simulate(mechanism, linkage, TURN, samples=SAMPLES, seed=3, spreads=spreads)
+        found = simulate_machines_with_errors(mechanism, linkage, TURN, samples=SAMPLES, seed=3, spreads=spreads)
         expected = variance_contributions(mechanism, linkage, TURN, spreads=spreads).sum(axis=0)
         remainder = first_order_position_errors(mechanism, linkage, TURN).remainder
         slack = 5.0 / math.sqrt(2.0 * SAMPLES) * np.sqrt(expected) + remainder
@@ -78,7 +78,7 @@ def test_errors_within_limits_stay_within_the_exact_extremes(shape: Shape, conta
     of = error_distribution(shape)
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in random_cases(2, seed=92, coarse=1.0):
-        found = simulate(mechanism, linkage, TURN, samples=2000, seed=4, spreads=spreads)
+        found = simulate_machines_with_errors(mechanism, linkage, TURN, samples=2000, seed=4, spreads=spreads)
         bounds = position_deviation_extremes(mechanism, linkage, TURN)
         assert found.stuck == 0
         assert np.all(found.errors <= bounds.greatest + 1e-15)
@@ -91,7 +91,7 @@ def test_errors_within_limits_stay_within_the_exact_extremes(shape: Shape, conta
 def test_yield_of_a_linear_error_is_that_of_the_normal_distribution() -> None:
     """An error of the rod at a dead centre of an in-line linkage: dx = dl, exactly."""
     mechanism = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=3e-4)))
-    found = simulate(mechanism, Linkage(0.05, 0.2), [0.0], samples=SAMPLES, seed=5)
+    found = simulate_machines_with_errors(mechanism, Linkage(0.05, 0.2), [0.0], samples=SAMPLES, seed=5)
     for limit in (1e-4, 2e-4, 3e-4):
         share = yield_within(found.errors[:, 0], limit, confidence=0.9999)
         true = 2.0 * stats.norm.cdf(limit / 1e-4) - 1.0
@@ -120,7 +120,9 @@ def test_clopper_pearson_interval_of_no_failures_has_its_closed_form() -> None:
 def test_first_order_exact_and_simulation_agree_on_case_four() -> None:
     """With normal errors cut at the limits: the exact worst case bounds all, the first order within its remainder."""
     of = error_distribution("truncated normal")
-    found = simulate(PUBLISHED, SUPPORT, TURN, seed=7, spreads=Spreads(crank=of, rod=of, offset=of, crank_angle=of))
+    found = simulate_machines_with_errors(
+        PUBLISHED, SUPPORT, TURN, seed=7, spreads=Spreads(crank=of, rod=of, offset=of, crank_angle=of)
+    )
     one, exact = (
         first_order_position_errors(PUBLISHED, SUPPORT, TURN),
         position_deviation_extremes(PUBLISHED, SUPPORT, TURN),
@@ -137,11 +139,11 @@ def test_first_order_exact_and_simulation_agree_on_case_four() -> None:
 
 
 def test_the_same_seed_gives_the_same_machines_and_more_begin_alike() -> None:
-    one = simulate(PUBLISHED, SUPPORT, TURN, samples=CHUNK + 5, seed=8)
-    two = simulate(PUBLISHED, SUPPORT, TURN, samples=CHUNK + 700, seed=8)
+    one = simulate_machines_with_errors(PUBLISHED, SUPPORT, TURN, samples=CHUNK + 5, seed=8)
+    two = simulate_machines_with_errors(PUBLISHED, SUPPORT, TURN, samples=CHUNK + 700, seed=8)
     np.testing.assert_array_equal(one.errors, two.errors[: CHUNK + 5])
     np.testing.assert_array_equal(one.greatest, two.greatest[: CHUNK + 5])
-    other = simulate(PUBLISHED, SUPPORT, TURN, samples=CHUNK, seed=9)
+    other = simulate_machines_with_errors(PUBLISHED, SUPPORT, TURN, samples=CHUNK, seed=9)
     assert not np.any(one.errors[:CHUNK] == other.errors)
 
 
@@ -150,23 +152,23 @@ def test_greatest_error_counts_in_the_window_only() -> None:
     windowed = dataclasses.replace(
         PUBLISHED, speed=1.0, tolerances=dataclasses.replace(PUBLISHED.tolerances, window=window)
     )
-    whole = simulate(PUBLISHED, SUPPORT, samples=500).greatest
-    part = simulate(windowed, SUPPORT, samples=500).greatest
+    whole = simulate_machines_with_errors(PUBLISHED, SUPPORT, samples=500).greatest
+    part = simulate_machines_with_errors(windowed, SUPPORT, samples=500).greatest
     assert np.all(part <= whole * (1.0 + 1e-3))  # other sampled angles
     assert part.mean() < 0.95 * whole.mean()
 
 
 def test_sampled_greatest_error_is_that_of_many_more_angles() -> None:
     for mechanism, linkage in CASES[:4]:
-        coarse = simulate(mechanism, linkage, samples=200).greatest
-        fine = simulate(mechanism, linkage, samples=200, angles=2048).greatest
+        coarse = simulate_machines_with_errors(mechanism, linkage, samples=200).greatest
+        fine = simulate_machines_with_errors(mechanism, linkage, samples=200, angles=2048).greatest
         assert np.all(coarse <= fine * (1.0 + 1e-12))
         np.testing.assert_allclose(coarse, fine, rtol=1e-3)
 
 
 def test_progress_is_told_and_cancelling_keeps_what_is_done() -> None:
     told: list[tuple[int, int]] = []
-    found = simulate(
+    found = simulate_machines_with_errors(
         PUBLISHED,
         SUPPORT,
         TURN,
@@ -182,7 +184,7 @@ def test_progress_is_told_and_cancelling_keeps_what_is_done() -> None:
 def test_machines_that_do_not_turn_are_counted_and_never_within_a_limit() -> None:
     close = Linkage(0.04, 0.0601, 0.02)
     mechanism = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=3e-4)))
-    found = simulate(mechanism, close, TURN, samples=4000)
+    found = simulate_machines_with_errors(mechanism, close, TURN, samples=4000)
     # The rod is 1 standard deviation longer than crank + offset: 15.87 % stick.
     assert yield_within(found.greatest, 1e3, confidence=0.9999).low < stats.norm.cdf(1.0)
     assert yield_within(found.greatest, 1e3, confidence=0.9999).high > stats.norm.cdf(1.0)
@@ -209,7 +211,7 @@ def test_summary_is_that_of_the_sample() -> None:
 )
 def test_wrong_arguments_are_refused(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
-        simulate(PUBLISHED, SUPPORT, **arguments)
+        simulate_machines_with_errors(PUBLISHED, SUPPORT, **arguments)
 
 
 def test_wrong_distributions_and_limits_are_refused() -> None:

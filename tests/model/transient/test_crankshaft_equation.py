@@ -12,7 +12,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
-from slidercrank.model.machine.cylinder_machines import member_machines
+from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
@@ -58,7 +58,7 @@ def needed(machine: Mechanism, running: SteadyRunning) -> np.ndarray:
     """Return the torque that the inverse dynamics of each cylinder needs for the motion, N m."""
     own = machine if machine.arrangement is not None else replace(machine, arrangement=Arrangement(phases=(0.0,)))
     linkage, total = replace(LINKAGE, branch=machine.branch), np.zeros(len(running.time))
-    for member in member_machines(own):
+    for member in machines_of_arrangement(own):
         at = running.crank_angle + member.lead
         found = cycle(member.mechanism, linkage, at, speed=running.speed, acceleration=running.acceleration)
         total += found.torque
@@ -68,7 +68,7 @@ def needed(machine: Mechanism, running: SteadyRunning) -> np.ndarray:
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism) -> None:
     linkage = replace(LINKAGE, branch=machine.branch)
-    running = Runner(machine, linkage).under_constant_torque(0.4)
+    running = Runner(machine, linkage).run_under_constant_torque(0.4)
     assert running.mean_speed == pytest.approx(machine.speed, rel=1e-11)
     span = np.ptp(running.crank_angle)
     assert span == pytest.approx(running.turns * 2.0 * math.pi, rel=1e-14)
@@ -84,7 +84,7 @@ def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism
 def test_two_cylinders_at_one_phase_are_one_with_half_the_flywheel() -> None:
     pair = replace(BARE, loads=(ENGINE,), arrangement=Arrangement(phases=(0.0, 0.0), places=(0.0, 0.1)))
     one, two = (
-        Runner(machine, LINKAGE).under_constant_torque(inertia)
+        Runner(machine, LINKAGE).run_under_constant_torque(inertia)
         for machine, inertia in ((replace(pair, arrangement=None), 0.3), (pair, 0.6))
     )
     assert two.fluctuation == pytest.approx(one.fluctuation, rel=1e-10)

@@ -23,7 +23,7 @@ def test_a_line_goes_through_stall_and_no_load_and_beyond() -> None:
 
 
 def test_a_line_can_be_given_by_its_rated_point() -> None:
-    motor = LinearMotor.through(torque=5.0, speed=148.0, no_load_speed=157.0)
+    motor = LinearMotor.from_rated_point(torque=5.0, speed=148.0, no_load_speed=157.0)
     assert motor.torque_at(148.0) == pytest.approx(5.0, rel=1e-14)
     assert motor.torque_at(157.0) == 0.0
 
@@ -62,7 +62,7 @@ def test_a_gear_multiplies_torque_and_divides_speed(way: float) -> None:
             "no_load_speed .* positive and finite; got inf",
         ),
         (
-            lambda: LinearMotor.through(torque=5.0, speed=160.0, no_load_speed=157.0),
+            lambda: LinearMotor.from_rated_point(torque=5.0, speed=160.0, no_load_speed=157.0),
             "below the no-load speed; got 5 N m",
         ),
         (lambda: TorqueTable(speeds=(0.0,), torques=(1.0,)), "as many torques as speeds, at least two; got 1 speeds"),

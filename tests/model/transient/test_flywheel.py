@@ -175,7 +175,7 @@ def test_a_crank_that_nearly_stops_has_a_fluctuation_without_bound() -> None:
     energies = Energies(machine, design)
     greatest = 0.0
     for flywheel in (0.02, 0.008, 0.005):
-        running = Runner(machine, Linkage(*design)).under_constant_torque(flywheel)
+        running = Runner(machine, Linkage(*design)).run_under_constant_torque(flywheel)
         assert running.fluctuation == pytest.approx(energies.fluctuation(flywheel), rel=1e-8)
         assert np.isfinite(running.speed).all()
         greatest = max(greatest, running.fluctuation)

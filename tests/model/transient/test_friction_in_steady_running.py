@@ -59,7 +59,7 @@ def test_torque_of_the_motion_is_that_of_inverse_dynamics_in_random_machines() -
     guides, fluctuations = 0, []
     for machine, design in zip(machines(), DESIGNS, strict=True):
         linkage = linkage_of(design, machine.branch)
-        running = Runner(machine, linkage).under_constant_torque(3.0)
+        running = Runner(machine, linkage).run_under_constant_torque(3.0)
         assert running.mean_speed == pytest.approx(machine.speed, rel=1e-11)
         assert error(machine, linkage, running) < 1e-9
         assert np.ptp(running.motor_torque) == 0.0
@@ -91,7 +91,7 @@ def test_a_motion_that_starts_in_steady_running_stays_in_it(machine: Mechanism) 
 def test_the_energy_integral_holds_over_the_turn(machine: Mechanism) -> None:
     """The work of the motor is that on the loads plus the heat in the joints, by the trapezoidal rule."""
     linkage = on_branch(machine)
-    running, count = Runner(machine, linkage).under_constant_torque(0.3), 60_000
+    running, count = Runner(machine, linkage).run_under_constant_torque(0.3), 60_000
     way = float(np.sign(machine.speed))
     energies = CubicHermiteSpline(way * running.crank_angle, 0.5 * running.speed**2, way * running.acceleration)
     at = float(way * running.crank_angle[0]) + 2.0 * math.pi * (np.arange(count) + 0.5) / count
@@ -119,7 +119,7 @@ def test_the_energy_integral_holds_over_the_turn(machine: Mechanism) -> None:
 
 def test_with_a_heavy_flywheel_the_torque_is_the_mean_one_of_constant_speed() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        running = Runner(machine, linkage_of(design, machine.branch)).under_constant_torque(1e7)
+        running = Runner(machine, linkage_of(design, machine.branch)).run_under_constant_torque(1e7)
         expected = torque_averages(machine, design[None])
         assert running.motor_torque[0] == pytest.approx(expected.mean[0], abs=1e-6 * expected.rms[0])
 
@@ -131,7 +131,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
         both = (replace(machine, friction=friction) for friction in (Friction(), nearly))
         runners = [Runner(each, on_branch(each)) for each in both]
         for one, other in zip(
-            *((each.under_constant_torque(0.3), each.run_under_drive(MOTOR)) for each in runners), strict=True
+            *((each.run_under_constant_torque(0.3), each.run_under_drive(MOTOR)) for each in runners), strict=True
         ):
             for name in ("mean_speed", "fluctuation", "work"):
                 assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-10)
@@ -146,7 +146,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
 def test_two_cylinders_at_one_phase_are_one_with_half_the_flywheel() -> None:
     pair = replace(RUBBED["strokes"], arrangement=Arrangement(phases=(0.0, 0.0), places=(0.0, 0.1)))
     one, two = (
-        Runner(machine, LINKAGE).under_constant_torque(inertia)
+        Runner(machine, LINKAGE).run_under_constant_torque(inertia)
         for machine, inertia in ((replace(pair, arrangement=None), 0.3), (pair, 0.6))
     )
     assert two.fluctuation == pytest.approx(one.fluctuation, rel=1e-10)

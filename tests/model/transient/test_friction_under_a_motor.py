@@ -235,7 +235,7 @@ def test_torque_rises_with_the_acceleration_by_no_less_than_the_bound() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
         equation = CrankEquation(machine, linkage_of(design, machine.branch))
         for way in (1.0, -1.0):
-            for span in equation.spans_of_cycle(way):
+            for span in equation.spans_in_passing_order(way):
                 angle = random.uniform(span.low, span.high, 20)
                 speed, size = way * random.uniform(0.0, 30.0, 20), 10.0 ** random.uniform(0.0, 4.0, 20)
                 low, high = np.sort(random.normal(size=(2, 20)), axis=0) * size

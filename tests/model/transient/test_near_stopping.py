@@ -79,7 +79,7 @@ def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above
         machine, design = random_machine(rng)
         least, greatest = Runner(machine, Linkage(*design)).least_and_greatest_speed(0.0)
         if least > 1e-3 * greatest:  # slower, a simulation turns back on its own errors
-            running = Runner(machine, Linkage(*design)).under_constant_torque(0.0)
+            running = Runner(machine, Linkage(*design)).run_under_constant_torque(0.0)
             matches(machine, design, running)
             found.append(running.fluctuation)
     assert sum(each > 2.0 for each in found) >= 3
@@ -87,7 +87,7 @@ def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above
 
 
 def test_a_load_that_always_pushes_inward_leaves_a_running_of_three_turns_a_minute_at_least() -> None:
-    running = Runner(INWARD, Linkage(*DESIGN)).under_constant_torque(0.0)
+    running = Runner(INWARD, Linkage(*DESIGN)).run_under_constant_torque(0.0)
     assert running.fluctuation == pytest.approx(6.3286, abs=5e-5)
     assert running.speed.min() * 30.0 / math.pi == pytest.approx(3.0164, abs=5e-5)
     matches(INWARD, DESIGN, running)
@@ -95,7 +95,7 @@ def test_a_load_that_always_pushes_inward_leaves_a_running_of_three_turns_a_minu
 
 def test_with_viscous_loads_the_running_near_stopping_is_that_of_the_simulation() -> None:
     machine = replace(INWARD, loads=(*INWARD.loads, Viscous(coefficient=60.0)))
-    running = Runner(machine, Linkage(*DESIGN)).under_constant_torque(0.0)
+    running = Runner(machine, Linkage(*DESIGN)).run_under_constant_torque(0.0)
     assert running.fluctuation > 2.0
     assert running.memory < 1.0
     matches(machine, DESIGN, running)
@@ -109,7 +109,7 @@ def test_ever_slower_the_crank_all_but_stops_and_its_greatest_speed_is_that_of_t
         machine = replace(machine, speed=0.5 * machine.speed)
         least, greatest = Runner(machine, Linkage(*design)).least_and_greatest_speed(0.0)
         if least > 0.0:
-            running = Runner(machine, Linkage(*design)).under_constant_torque(0.0)
+            running = Runner(machine, Linkage(*design)).run_under_constant_torque(0.0)
             assert (least, greatest) == (np.abs(running.speed).min(), np.abs(running.speed).max())
             continue
         stopping += 1
@@ -120,5 +120,5 @@ def test_ever_slower_the_crank_all_but_stops_and_its_greatest_speed_is_that_of_t
         ]
         assert greatest == pytest.approx(math.sqrt(max(float(square.max()) for square in squares)), rel=1e-6)
         with pytest.raises(InputError, match="no constant torque was found"):
-            Runner(machine, Linkage(*design)).under_constant_torque(0.0)
+            Runner(machine, Linkage(*design)).run_under_constant_torque(0.0)
     assert 10 < stopping < 30

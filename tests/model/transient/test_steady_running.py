@@ -70,7 +70,7 @@ def test_with_a_growing_flywheel_the_torque_tends_to_that_of_constant_speed_with
     for machine in (SMOOTH, STROKES):
         off = []
         for inertia in (10.0, 20.0, 40.0, 80.0):
-            running = Runner(machine, LINKAGE).under_constant_torque(inertia)
+            running = Runner(machine, LINKAGE).run_under_constant_torque(inertia)
             assert running.mean_speed == pytest.approx(machine.speed, rel=1e-12)
             steady = cycle(replace(machine, acceleration=0.0), LINKAGE, running.crank_angle)
             off.append(np.abs(running.torque - steady.torque).max() / np.abs(steady.torque).max())
@@ -82,7 +82,7 @@ def test_with_a_growing_flywheel_the_torque_tends_to_that_of_constant_speed_with
 def test_the_constant_torque_is_the_mean_torque_of_constant_speed_if_no_load_depends_on_speed() -> None:
     for design in random_designs(5, seed=5, least_margin=0.05):
         machine = replace(STROKES, acceleration=0.0)
-        running = Runner(machine, linkage_of(design, machine.branch)).under_constant_torque(8.0)
+        running = Runner(machine, linkage_of(design, machine.branch)).run_under_constant_torque(8.0)
         # Kinks at the dead centres only: off by the square of the step.
         mean = drive_torque(machine, design, np.linspace(0.0, 2.0 * math.pi, 400_000, endpoint=False)).mean()
         assert running.motor_torque[0] == pytest.approx(mean, rel=1e-9)
@@ -93,7 +93,7 @@ def test_the_constant_torque_is_the_mean_torque_of_constant_speed_if_no_load_dep
 def test_speed_of_steady_running_is_the_energy_integral() -> None:
     # No load depends on speed: (J + J_drive) w^2 / 2 changes by the work of the surplus torque alone.
     machine = Mechanism(speed=20.0, crank=RigidLink(mass=1.0), slider_mass=2.0, gravity=(-9.81, 0.0))
-    running = Runner(machine, LINKAGE).under_constant_torque(0.02)
+    running = Runner(machine, LINKAGE).run_under_constant_torque(0.02)
     assert running.fluctuation > 0.1
     still = cycle(replace(machine, speed=0.0), LINKAGE, running.crank_angle)
     inertia = cycle(replace(machine, speed=0.0, acceleration=1.0), LINKAGE, running.crank_angle).torque - still.torque
@@ -187,6 +187,6 @@ def test_wrong_wishes_are_refused() -> None:
         with pytest.raises(InputError, match="fluctuation must lie between 0 and 1; got"):
             design_flywheel(SMOOTH, LINKAGE, wrong)
     with pytest.raises(InputError, match="needs the mean speed"):
-        Runner(replace(SMOOTH, speed=0.0), LINKAGE).under_constant_torque(1.0)
+        Runner(replace(SMOOTH, speed=0.0), LINKAGE).run_under_constant_torque(1.0)
     with pytest.raises(InputError, match="no constant torque was found"):
-        Runner(replace(STROKES, speed=0.5), LINKAGE).under_constant_torque(0.0)
+        Runner(replace(STROKES, speed=0.5), LINKAGE).run_under_constant_torque(0.0)

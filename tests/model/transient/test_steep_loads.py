@@ -94,7 +94,7 @@ def test_without_any_inertia_there_are_no_speeds_and_it_is_said_why() -> None:
 def test_more_panels_than_a_bound_end_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(steady_cycle, "_MOST", 0)
     with pytest.raises(InputError, match=r"that 4\d panels do not resolve, for example at a crank angle of"):
-        Runner(replace(PRESS, slider_mass=50.0), LINKAGE).under_constant_torque(700.0)
+        Runner(replace(PRESS, slider_mass=50.0), LINKAGE).run_under_constant_torque(700.0)
 
 
 def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> None:

@@ -176,11 +176,11 @@ def test_a_swing_may_use_its_whole_cylinder_within_rounding() -> None:
 def test_a_dead_length_adds_to_the_stroke_or_to_the_travel() -> None:
     lengths = 0.670740, 1.071435
     known = Cylinder(dead_length=0.2, stroke=0.44)
-    assert known.closed_and_stroke(0.4) == pytest.approx((0.64, 0.44))
+    assert known.closed_length_and_stroke(0.4) == pytest.approx((0.64, 0.44))
     assert summarise_swing(TIPPER, SLOW, known).fitting_sizes == pytest.approx(
         summarise_swing(TIPPER, SLOW, Cylinder(closed_length=0.64, stroke=0.44)).fitting_sizes
     )
-    assert Cylinder(dead_length=0.22).closed_and_stroke(0.4) == pytest.approx((0.62, 0.4))
+    assert Cylinder(dead_length=0.22).closed_length_and_stroke(0.4) == pytest.approx((0.62, 0.4))
     summarise_swing(TIPPER, SLOW, Cylinder(dead_length=lengths[0] - (lengths[1] - lengths[0]) - 1e-5))
     with pytest.raises(InputError, match=r"got a closed length of 700\.695 mm, and the swing needs 670\.74 mm"):
         summarise_swing(TIPPER, SLOW, Cylinder(dead_length=0.3))

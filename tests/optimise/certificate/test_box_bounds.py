@@ -119,7 +119,9 @@ def bounded(machine: Mechanism) -> dict[str, Any]:
 
 def judged(given: Problem, branch: EliminationBranch, u: Array) -> tuple[Array, Array]:
     """Return the dimensions of points of a branch and how far they violate what is asked, one objective computed."""
-    dimensions, _, violation = Evaluator(replace(given, objectives=given.objectives[:1]), branch).screen(u)
+    dimensions, _, violation = Evaluator(
+        replace(given, objectives=given.objectives[:1]), branch
+    ).screen_designs_objectives_violation(u)
     return dimensions, violation
 
 
@@ -131,7 +133,7 @@ def sampled(given: Problem, width: float, *, count: int = 60, inside: int = 40, 
         boxes = Boxes(evaluator, np.ones(len(given.objectives)))
         k = evaluator.dimension
         low = random.random((count, k)) * (1.0 - width)
-        found = boxes.bound(low, low + width)
+        found = boxes.bound_boxes(low, low + width)
         u = low[:, None] + width * random.random((count, inside, k))
         dimensions, violation = judged(given, branch, u.reshape(-1, k))
         rows = np.flatnonzero(violation <= FEASIBLE)
@@ -236,7 +238,7 @@ def assert_close_to_designs(given: Problem, count: int, tolerance: float) -> Non
     dimensions, violation = judged(given, branch, u)
     rows = np.flatnonzero(violation <= FEASIBLE)
     assert len(rows) > 10
-    found = Boxes(evaluator, np.ones(len(given.objectives))).bound(u[rows], u[rows])
+    found = Boxes(evaluator, np.ones(len(given.objectives))).bound_boxes(u[rows], u[rows])
     assert found.alive.all()
     for column, objective in enumerate(given.objectives):
         quantity = given.quantity(objective.quantity)

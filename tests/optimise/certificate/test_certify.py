@@ -19,7 +19,7 @@ from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.covering_designs import (
-    choose_covering,
+    choose_covering_designs,
     excess_over_designs,
     greedy_cover,
     hypervolume_gap_bound,
@@ -61,7 +61,7 @@ def feasible(given: Problem, count: int, seed: int = 9) -> Array:
         for evaluator in evaluators:
             for part in np.array_split(random.random((60_000, evaluator.dimension)), 20):
                 if total < count:
-                    _, values, violation = evaluator.screen(part)
+                    _, values, violation = evaluator.screen_designs_objectives_violation(part)
                     found.append(values[violation <= FEASIBLE])
                     total += len(found[-1])
     return np.concatenate(found)[:count]
@@ -220,7 +220,7 @@ def test_a_design_that_is_dominated_does_not_pass_for_the_front() -> None:
     given = two().problem
     evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.random.default_rng(2).random((20_000, 2))
-    dimensions, values, violation = evaluator.screen(u)
+    dimensions, values, violation = evaluator.screen_designs_objectives_violation(u)
     good = np.flatnonzero(violation <= FEASIBLE)
     poor = good[np.argsort(values[good, 0])[len(good) // 2 :][:5]]
     found = certify_designs(given, dimensions[poor], epsilon=0.5, seconds=0.5)
@@ -309,7 +309,7 @@ def test_thinned_designs_cover_what_all_of_them_cover() -> None:
     random = np.random.default_rng(1)
     points = random.random((400, 2))
     values = points + 0.05 * random.random((400, 2))
-    chosen = choose_covering(points, values, 0.1)
+    chosen = choose_covering_designs(points, values, 0.1)
     assert excess_over_designs(points, values[chosen]).max() <= 0.1
     few = greedy_cover(points, values[chosen], 0.1)
     assert excess_over_designs(points, values[chosen][few]).max() <= 0.1

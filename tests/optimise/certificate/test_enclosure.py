@@ -54,7 +54,7 @@ def enclose(formula: Callable[[Any, Any, Any], Any], low: Array, high: Array) ->
 @pytest.mark.parametrize("name", FORMULAS)
 def test_every_sample_lies_within_its_enclosure(name: str, width: float) -> None:
     low, high = boxes(width)
-    least, most = enclose(FORMULAS[name], low, high).ends()
+    least, most = enclose(FORMULAS[name], low, high).least_and_greatest()
     share = np.random.default_rng(4).random((100, 3))
     share[:8] = np.array(np.meshgrid(*[[0.0, 1.0]] * 3)).reshape(3, -1).T
     for part in share:
@@ -86,7 +86,7 @@ def test_a_root_that_is_negative_in_all_of_the_box_is_said_to_be_empty() -> None
 
 def test_a_root_that_is_negative_in_a_part_of_the_box_bounds_the_rest_of_it() -> None:
     low, high = boxes(0.5)
-    least, most = enclose(lambda x, y, z: root(x - y), low, high).ends()
+    least, most = enclose(lambda x, y, z: root(x - y), low, high).least_and_greatest()
     for part in np.random.default_rng(4).random((100, 3)):
         x = low + (high - low) * part
         with np.errstate(invalid="ignore"):
@@ -97,7 +97,7 @@ def test_a_root_that_is_negative_in_a_part_of_the_box_bounds_the_rest_of_it() ->
 def test_a_division_by_what_may_be_zero_says_nothing() -> None:
     low, high = boxes(0.5)
     found = enclose(lambda x, y, z: 1.0 / (x - 0.5 * (low[:, :1] + high[:, :1])), low, high)
-    least, most = found.ends()
+    least, most = found.least_and_greatest()
     assert np.isneginf(least).all()
     assert np.isposinf(most).all()
 
@@ -106,7 +106,7 @@ def test_a_division_by_what_may_be_zero_says_nothing() -> None:
 def test_a_table_over_an_enclosed_position_holds_every_sample(width: float) -> None:
     at, force = np.array([0.8, 1.0, 1.3, 1.3, 1.31, 2.0]), np.array([2.0, -1.0, 4.0, 6.0, 0.0, 0.5])
     low, high = boxes(width)
-    least, most = interpolate_force(free_unknown(low[:, 0], high[:, 0], 0, 3), at, force).ends()
+    least, most = interpolate_force(free_unknown(low[:, 0], high[:, 0], 0, 3), at, force).least_and_greatest()
     for part in np.linspace(0.0, 1.0, 200):
         value = np.interp(low[:, :1] + (high[:, :1] - low[:, :1]) * part, at, force)
         assert not ((value < least) | (value > most)).any()
@@ -124,7 +124,7 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
     angles = 0.4 + random.uniform(-0.4, 0.4, 40)
     sides = {k: free_unknown(low[:, k], high[:, k], k, 3) for k in range(3)}
     found = curve.enclose(sides, angles[:, None], 0.5 * (low + high))
-    least, most = (end.reshape(40, -1) for end in found.ends())
+    least, most = (end.reshape(40, -1) for end in found.least_and_greatest())
     for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
         for share in random.random((20, 3)):
             r, l, e = design * (1.0 + 0.02 * share)
@@ -143,6 +143,6 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
         sides = {k: free_unknown(low[:, k], high[:, k], k, 3) for k in range(3)}
-        least = CycleCurve(machine, Signal.TORQUE).enclose(sides, peak.angles, middle).ends()[0]
+        least = CycleCurve(machine, Signal.TORQUE).enclose(sides, peak.angles, middle).least_and_greatest()[0]
         assert least.max() <= peak.values[0, 0]
         assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)

@@ -18,7 +18,7 @@ from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, best_balance
 from slidercrank.optimise.sizing.input_words import Measure
-from slidercrank.optimise.sizing.shaking_rows import shaking_rows, with_masses
+from slidercrank.optimise.sizing.shaking_rows import shaking_rows, with_balance_masses
 from tests.model.cases import linkage_of, random_designs, random_machine
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ def test_shaking_is_affine_in_counterweight_and_rod_balance() -> None:
         x = np.array([*random.uniform(-0.2, 0.2, 2), mass, *(mass * at), mass * at @ at + own])
         force, moment = (table @ np.array([1.0, *x]) for table in shaking_rows(machine, linkage, TURN[:9]))
         radius = random.uniform(0.01, 0.1)
-        expected = shaking_curves(with_masses(machine, linkage, x, radius), linkage, TURN[:9])
+        expected = shaking_curves(with_balance_masses(machine, linkage, x, radius), linkage, TURN[:9])
         size = np.abs(force).max()
         np.testing.assert_allclose(force, [expected.force_x, expected.force_y], rtol=0, atol=1e-12 * size)
         np.testing.assert_allclose(moment, expected.moment, rtol=0, atol=1e-12 * np.abs(moment).max())

@@ -14,7 +14,7 @@ from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.sample_and_zoom import explore
+from slidercrank.optimise.search.sample_and_zoom import sample_and_zoom
 from slidercrank.optimise.solve import solve
 from tests.optimise.convex.random_problems import random_problem
 from tests.optimise.independent import feasible
@@ -27,17 +27,19 @@ STROKE: dict[str, Bounds] = {"stroke": (0.08, 0.09), "transmission_angle": (degr
 def best_end(wanted: Problem) -> tuple[Evaluator, Point, float]:
     """Return the best feasible end of the descents, its evaluator, and the scale of the objective."""
     evaluators = [Evaluator(wanted, branch) for branch in elimination_branches(wanted)]
-    scale, begin = descent_starts(wanted, evaluators, explore(wanted, evaluators))
+    scale, begin = descent_starts(wanted, evaluators, sample_and_zoom(wanted, evaluators))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
-    ends = [(evaluators[index], descents[index].run(u)) for index, u in begin]
-    evaluator, end = min((item for item in ends if item[1].violation <= FEASIBLE), key=lambda item: item[1].top)
+    ends = [(evaluators[index], descents[index].descend_from(u)) for index, u in begin]
+    evaluator, end = min(
+        (item for item in ends if item[1].violation <= FEASIBLE), key=lambda item: item[1].greatest_piece
+    )
     return evaluator, end, scale
 
 
 def least(wanted: Problem) -> float:
     """Return the least value of the objective."""
     _, end, scale = best_end(wanted)
-    return end.top * scale
+    return end.greatest_piece * scale
 
 
 @pytest.mark.parametrize("seed", [13, 21, 28])
@@ -45,11 +47,11 @@ def test_it_agrees_with_the_default_search_on_the_least_peak_torque(seed: int) -
     """To 1e-6 of the torque; the multipliers leave less than 1e-6 of the gradients. Seeds: one to three peaks tie."""
     wanted = random_problem(seed)
     evaluator, end, scale = best_end(wanted)
-    assert end.top * scale == pytest.approx(solve(wanted).values[0, 0], rel=1e-6)
+    assert end.greatest_piece * scale == pytest.approx(solve(wanted).values[0, 0], rel=1e-6)
     assert end.residual <= 1e-6
-    dimensions = evaluator.branch.dimensions(end.u)
+    dimensions = evaluator.branch.designs_at_points(end.u)
     again = QUANTITIES[wanted.objectives[0].quantity].evaluate(wanted.mechanism, dimensions).values[0]
-    assert again == pytest.approx(end.top * scale, rel=1e-12)
+    assert again == pytest.approx(end.greatest_piece * scale, rel=1e-12)
     assert feasible(wanted, dimensions, slack=1e-8).all()
 
 
@@ -60,7 +62,7 @@ def test_two_peaks_tie_where_the_torque_is_least() -> None:
     tied = end.step.goals > 1e-7
     assert tied.sum() == 2
     assert end.step.goals.sum() == pytest.approx(1.0, abs=1e-9)
-    peaks = QUANTITIES["peak_torque"].pieces(wanted.mechanism, evaluator.branch.dimensions(end.u))
+    peaks = QUANTITIES["peak_torque"].pieces(wanted.mechanism, evaluator.branch.designs_at_points(end.u))
     assert peaks.values[0, 1] == pytest.approx(peaks.values[0, 0], rel=1e-9)
     assert sorted(end.goals.labels[tied]) == pytest.approx(sorted(peaks.labels[0, :2]), abs=1e-9)
 
@@ -69,7 +71,7 @@ def test_two_peaks_tie_where_the_torque_is_least() -> None:
 def test_any_quantity_can_be_minimised(quantity: str) -> None:
     wanted = problem({quantity: "minimise"}, {"time_ratio": (1.2, None)}, crank=(0.03, 0.2))
     _, end, scale = best_end(wanted)
-    assert end.top * scale == pytest.approx(solve(wanted).values[0, 0], rel=1e-6)
+    assert end.greatest_piece * scale == pytest.approx(solve(wanted).values[0, 0], rel=1e-6)
     assert end.residual <= 1e-6
 
 
@@ -112,7 +114,7 @@ def test_a_kink_of_three_pieces_is_found_in_the_plane() -> None:
     pieces: list[Function] = [lambda x, y: x, lambda x, y: y, lambda x, y: 1.0 - x - y]
     descent = Descent(Analytic([pieces]), 1.0)
     for start in STARTS[:3]:
-        end = descent.run(start)
+        end = descent.descend_from(start)
         assert end.u == pytest.approx([1.0 / 3.0, 1.0 / 3.0], abs=1e-9)
         assert end.step is not None
         assert end.step.goals == pytest.approx([1.0 / 3.0] * 3, abs=1e-7)
@@ -126,7 +128,7 @@ def test_a_smooth_optimum_is_reached_as_fast_as_a_kink() -> None:
         return np.asarray((1.0 - x) ** 2 + 100.0 * (y - x * x) ** 2)
 
     descent = Descent(Analytic([[valley]]), 1.0)
-    ends = [descent.run(start) for start in STARTS[:3]]
+    ends = [descent.descend_from(start) for start in STARTS[:3]]
     assert max(end.residual for end in ends) <= 1e-6
     assert [end.u for end in ends] == [pytest.approx([2.0 / 3.0, 2.0 / 3.0], abs=1e-6)] * 3
 
@@ -136,7 +138,7 @@ def test_curved_constraints_hold_from_infeasible_starts() -> None:
     disc = Analytic([[lambda x, y: -x - 2.0 * y]], [lambda x, y: x * x + y * y - 0.5])
     descent = Descent(disc, 1.0)
     for start in STARTS[:4]:
-        end = descent.run(start)
+        end = descent.descend_from(start)
         assert end.u == pytest.approx(np.array([1.0, 2.0]) * np.sqrt(0.1), abs=1e-6)
         assert end.violation <= 1e-9
         assert end.residual <= 1e-6

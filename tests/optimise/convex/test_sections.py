@@ -104,14 +104,14 @@ def demands(
             own = mechanism.speed**2 * static + g * (line * r + disc)
             bend = g * static + abs(mechanism.acceleration) * polar
             bend_a, bend_m = joints.bending.amplitude + bend, joints.bending.mean
-            bend_peak = joints.bending.peak + bend
+            bend_peak = joints.bending.greatest_magnitude + bend
             pins = [(joints.crank_pivot, limits.crank_pivot), (joints.crank_pin, limits.crank_pin)]
         area, modulus = width * depth, depth * width**2 / 6.0
         squash = max(0.0, -load.least) + own
         euler = [math.pi**2 * material.elasticity * i / held**2 for i in (depth * width**3 / 12, width * depth**3 / 12)]
         ratio = limits.static_safety * squash / euler[0]
         swell = 4.0 / math.pi * ratio / (1.0 - ratio) * bend_peak
-        stress = (load.peak + own) / area + (bend_peak + swell) / modulus
+        stress = (load.greatest_magnitude + own) / area + (bend_peak + swell) / modulus
         amplitude = (load.amplitude + own) / area + (bend_a + swell) / modulus
         middle = load.mean / area + bend_m / modulus
         found += [
@@ -130,7 +130,7 @@ def demands(
             hole = limits.crank_pivot
             net, second = (width - hole) * depth, depth * (width**3 - hole**3) / 12.0
             for pulled, bent, y in ((raised, min(raised, 2.0), hole / 2.0), (1.0, 1.0, width / 2.0)):
-                stress = pulled * (load.peak + own) / net + bent * (bend_peak + swell) * y / second
+                stress = pulled * (load.greatest_magnitude + own) / net + bent * (bend_peak + swell) * y / second
                 amplitude = pulled * (load.amplitude + own) / net + bent * (bend_a + swell) * y / second
                 middle = pulled * load.mean / net + bent * bend_m * y / second
                 used = limits.static_safety * stress / material.yield_strength
@@ -260,11 +260,13 @@ def test_the_swelling_of_a_moment_under_compression_is_bounded() -> None:
 def test_sampled_pin_forces_are_within_what_the_peaks_say() -> None:
     """The axial force never exceeds the pin's; without mass in the rod both are the same force."""
     joints = joint_loads(MACHINE, LINKAGE)
-    assert joints.rod.peak == pytest.approx(joints.slider_pin, rel=1e-5)
+    assert joints.rod.greatest_magnitude == pytest.approx(joints.slider_pin, rel=1e-5)
     heavy = joint_loads(replace(MACHINE, rod=Bar(width=0.03, depth=0.02, density=7850.0)), LINKAGE)
-    assert heavy.rod.peak <= max(heavy.slider_pin, heavy.crank_pin) * (1.0 + 1e-9)
+    assert heavy.rod.greatest_magnitude <= max(heavy.slider_pin, heavy.crank_pin) * (1.0 + 1e-9)
     torque = find_peaks(MACHINE, Signal.TORQUE, np.array([[0.05, 0.2, 0.03]]), limit=1).values[0, 0]
-    assert joints.bending.peak == pytest.approx(torque, rel=1e-5)  # a massless crank's moment is the drive's torque
+    assert joints.bending.greatest_magnitude == pytest.approx(
+        torque, rel=1e-5
+    )  # a massless crank's moment is the drive's torque
 
 
 def test_tension_is_positive() -> None:

@@ -70,8 +70,8 @@ def test_with_one_active_angle_it_is_the_dearest_of_the_closed_forms_of_single_a
     for design in random_designs(9, seed=2, least_margin=0.05):
         linkage, costs = linkage_of(design), random_costs(random, free=True)
         found = allocate_tolerances(linkage, costs, limit, kind)
-        b = np.array([cost.cost * cost.at for cost in costs.by_name.values()])
-        fixed = sum(cost.fixed for cost in costs.by_name.values())
+        b = np.array([cost.cost * cost.at for cost in costs.costs_by_name.values()])
+        fixed = sum(cost.fixed for cost in costs.costs_by_name.values())
 
         def alone(theta: Any, b: Array = b, linkage: Linkage = linkage) -> Any:
             return np.sum((b * influence_sizes(linkage, theta).T) ** power, axis=-1) ** root / limit
@@ -104,14 +104,14 @@ def by_slsqp(mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float,
     gap = mechanism.tolerances.clearances
     pins = np.array([gap.crank_pivot, gap.crank_pin, gap.slider_pin])
     room = 1.0 - np.sum(pins**power) * s[1] - gap.guide**power * s[2]
-    each = list(costs.by_name.values())
+    each = list(costs.costs_by_name.values())
     unit = np.array([cost.at for cost in each])
 
     def cost(z: Array) -> float:
         return float(sum(c.cost_at(float(t)) for c, t in zip(each, unit * np.exp(z), strict=True)))
 
     def slope(z: Array) -> Array:
-        return np.array([c.slope(float(t)) * t for c, t in zip(each, unit * np.exp(z), strict=True)])
+        return np.array([c.cost_slope(float(t)) * t for c, t in zip(each, unit * np.exp(z), strict=True)])
 
     start = np.full(4, np.log(0.5 * room.min() / (4.0 * s.max(axis=1) @ unit**power)) / power)
     bounds = [
@@ -153,7 +153,7 @@ def test_slsqp_on_many_angles_finds_the_same_tolerances(kind: Kind) -> None:
             continue
         compared += 1
         there = by_slsqp(mechanism, linkage, costs, limit, found)
-        cost = sum(c.cost_at(float(t)) for c, t in zip(costs.by_name.values(), there, strict=True))
+        cost = sum(c.cost_at(float(t)) for c, t in zip(costs.costs_by_name.values(), there, strict=True))
         assert found.cost == pytest.approx(cost, rel=1e-8)
         np.testing.assert_allclose(values_of(found), there, rtol=1e-6)
     assert compared >= 5
@@ -195,7 +195,7 @@ def test_prices_predict_what_loosening_a_limit_or_a_bound_by_one_percent_saves(k
                 SIEVE, costs, 2e-4 * (1.0 + share), kind
             ).cost, base.saving * 2e-4 * share
         part = next(part for part in base.parts if part.name == which)
-        cost = costs.by_name[which]
+        cost = costs.costs_by_name[which]
         end = {"greatest": cost.greatest * (1.0 + share)} if which == "rod" else {"least": cost.least * (1.0 - share)}
         moved = dataclasses.replace(costs, **{which: dataclasses.replace(cost, **end)})
         return base.cost - allocate_tolerances(SIEVE, moved, 2e-4, kind).cost, part.saving * part.tolerance * share
@@ -216,7 +216,7 @@ def test_where_the_limit_is_wide_every_tolerance_is_the_greatest_and_only_its_bo
     assert len(found.angles) == 0
     assert found.error < 1e-3
     for part in found.parts:
-        assert part.saving == pytest.approx(-cost.slope(1e-5), rel=1e-12)
+        assert part.saving == pytest.approx(-cost.cost_slope(1e-5), rel=1e-12)
 
 
 def test_a_tolerance_without_a_cost_is_given_and_takes_its_part_of_the_limit() -> None:
@@ -258,4 +258,4 @@ def test_what_can_not_be_met_or_makes_no_sense_is_refused() -> None:
         with pytest.raises(InputError, match=message):
             wrong()
     assert cost.cost_at(0.0) == np.inf
-    assert list(PLAIN.by_name) == list(NAMES)
+    assert list(PLAIN.costs_by_name) == list(NAMES)

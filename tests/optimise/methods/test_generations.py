@@ -113,13 +113,13 @@ def test_a_point_is_evaluated_once_however_often_it_comes() -> None:
         return Brood(np.array([0, 1, 0]), point, np.zeros(0, np.int64))
 
     for evaluator in evaluators:
-        inner = evaluator.screen
+        inner = evaluator.screen_designs_objectives_violation
 
         def counted(u: Array, *, band: float = 0.0, inner: object = inner) -> tuple[Array, Array, Array]:
             screened.append(len(u))
             return inner(u, band=band)  # type: ignore[operator, no-any-return]
 
-        evaluator.screen = counted  # type: ignore[method-assign]
+        evaluator.screen_designs_objectives_violation = counted  # type: ignore[method-assign]
     run = Run(given, 1)
     population.evolve(given, evaluators, run, breed, size=3)
     # As many generations as fit into the budget; the same coordinates on two branches are two designs.
@@ -144,7 +144,9 @@ def test_what_is_not_finite_is_never_told_as_feasible(monkeypatch: pytest.Monkey
     u = np.array([[0.5, 0.5, 0.5]] * 4)
     wrong = np.array([[np.nan, 1.0], [np.inf, 1.0], [1.0, 1.0], [1.0, 1.0]])
     met = np.array([0.0, 0.0, np.nan, 0.0])
-    monkeypatch.setattr(evaluator, "screen", lambda u, *, band: (u, wrong.copy(), met.copy()))
+    monkeypatch.setattr(
+        evaluator, "screen_designs_objectives_violation", lambda u, *, band: (u, wrong.copy(), met.copy())
+    )
     values, violation = population.objectives_and_violations(evaluator, u)
     assert violation.tolist() == [np.inf, np.inf, np.inf, 0.0]
     assert np.isnan(values[:3]).all()
@@ -184,10 +186,12 @@ def test_a_population_of_one_cannot_breed() -> None:
 
 
 def test_the_archive_has_what_no_other_design_dominates() -> None:
-    from slidercrank.optimise.methods.population import random
+    from slidercrank.optimise.methods.population import search_random_points
 
     given = asked("random")
-    archive = random(given, [Evaluator(given, branch) for branch in elimination_branches(given)], Run(given, 1))
+    archive = search_random_points(
+        given, [Evaluator(given, branch) for branch in elimination_branches(given)], Run(given, 1)
+    )
     values = np.concatenate([generation.values for generation in whole("random")[1]])
     values = values[np.isfinite(values).all(axis=1)]
     best = {row.tobytes() for row in values if not ((values <= row).all(axis=1) & (values < row).any(axis=1)).any()}

@@ -109,7 +109,7 @@ def test_designs_are_delivered_as_they_were_found() -> None:
     front = solve(asking(BOTH, "sobol"))
     random = np.random.default_rng(1)
     evaluator = Evaluator(BOTH, elimination_branches(BOTH)[0])
-    sampled = evaluator.branch.dimensions(random.random((2 * POINTS, 2)))
+    sampled = evaluator.branch.designs_at_points(random.random((2 * POINTS, 2)))
     assert front.status == "done"
     assert 5 <= len(front) <= 20
     assert all((np.abs(sampled - design).max(axis=1) == 0.0).any() for design in front.dimensions)

@@ -107,7 +107,7 @@ def test_points_of_the_grid_are_the_upper_ends_of_its_cells() -> None:
 
 def test_a_form_is_the_greatest_weighted_distance_plus_a_little_of_the_sum() -> None:
     form = Form(np.array([1.0, 2.0, 0.0]), np.array([0.0, 0.5, 9.0]), np.array([np.inf, 1.0, np.inf]), 0.1)
-    assert form.value(np.array([[0.3, 0.7, 1.0], [0.9, 0.7, 1.0], [0.0, 1.1, 0.0]])).tolist() == pytest.approx(
+    assert form.form_value(np.array([[0.3, 0.7, 1.0], [0.9, 0.7, 1.0], [0.0, 1.1, 0.0]])).tolist() == pytest.approx(
         [0.4 + 0.2, 0.9 + 0.26, np.inf]
     )
 
@@ -120,7 +120,9 @@ def test_slopes_of_a_programme_are_the_differences_of_its_rows(seed: int) -> Non
     random = np.random.default_rng(seed)
     u = random.random((50, evaluator.dimension))
     u = u[evaluator.can_evaluate(u)][0]
-    programme = Programme(evaluator, Form.single(2, 0, rho=0.1), np.array([0.0, 0.0]), np.array([100.0, 1.0]))
+    programme = Programme(
+        evaluator, Form.of_single_objective(2, 0, rho=0.1), np.array([0.0, 0.0]), np.array([100.0, 1.0])
+    )
     z = programme.start_vector(u)
     slopes = programme.inequality_slopes(z)
     for column in range(len(z)):
@@ -134,7 +136,7 @@ def test_a_programme_begins_where_its_rows_hold_but_for_the_problem_s_own_constr
     evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.full((1, evaluator.dimension), 0.4)
     assert evaluator.can_evaluate(u).all()
-    programme = Programme(evaluator, Form.single(2, 1), np.zeros(2), np.array([100.0, 0.1]))
+    programme = Programme(evaluator, Form.of_single_objective(2, 1), np.zeros(2), np.array([100.0, 0.1]))
     z = programme.start_vector(u[0])
     assert programme.inequalities(z).max() <= max(1e-12, programme.violation(u[0]))
     assert z[-1] == pytest.approx(programme.objectives(u[0])[1])

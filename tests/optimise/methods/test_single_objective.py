@@ -103,7 +103,7 @@ def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
     begun = starting_samples(given, evaluators)
     best = best_on_the_equality()
     for row in begun.leading_rows(0, 12):
-        programme = Programme(evaluators[0], Form.single(1, 0), np.zeros(1), np.ones(1))
+        programme = Programme(evaluators[0], Form.of_single_objective(1, 0), np.zeros(1), np.ones(1))
         found = by_slsqp(programme, begun.u[row])
         assert found is not None
         assert programme.objectives(found) == pytest.approx(best, rel=1e-8)

@@ -161,7 +161,9 @@ def test_no_random_law_is_better_than_the_bound() -> None:
     for _ in range(200):
         phases = np.arange(1, 5)[:, None] * turn.passed
         waves = random.normal(size=(2, 4)) * random.uniform(0.0, 20.0)
-        law = MotionLaw.made_periodic(turn, steady + waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0)
+        law = MotionLaw.from_torque_made_periodic(
+            turn, steady + waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0
+        )
         floor = -float(law.node_energies.min())
 
         def late(energy: float, law: MotionLaw = law) -> float:

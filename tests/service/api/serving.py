@@ -13,7 +13,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from slidercrank.service.api.app import create_app
-from slidercrank.service.api.server import config_of, listen
+from slidercrank.service.api.server import config_of, listening_socket
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 
@@ -23,7 +23,7 @@ TOKEN = "a-long-random-text"
 @contextlib.contextmanager
 def serving(app: FastAPI, *, port: int = 0) -> Iterator[str]:
     """Serve an application while entered; gives its address. port: any free one unless given."""
-    with listen("127.0.0.1", port) as listening:
+    with listening_socket("127.0.0.1", port) as listening:
         server = uvicorn.Server(config_of(app))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
         thread.start()

@@ -45,7 +45,7 @@ def test_a_job_comes_as_a_file_a_text_or_tables(client: Client, store: Store, tm
     file = fronts.job_file(tmp_path)
     numbers = [client.submit(job)["id"] for job in (file, str(file), fronts.JOB, TABLES)]
     assert numbers == [1, 2, 3, 4]
-    assert all(store.tables(number) == TABLES for number in numbers)
+    assert all(store.job_tables(number) == TABLES for number in numbers)
 
 
 def test_the_points_of_a_target_motion_come_along(client: Client, store: Store, tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_the_points_of_a_target_motion_come_along(client: Client, store: Store, 
     file = tmp_path / "job.toml"
     file.write_text(f'{fronts.JOB}\n[target_motion]\nfile = "wanted.csv"\n', encoding="utf-8")
     number = client.submit(file)["id"]
-    assert len(store.tables(number)["target_motion"]["positions"]) == 3
+    assert len(store.job_tables(number)["target_motion"]["positions"]) == 3
 
 
 def test_priority_limits_and_key_come_along(client: Client, store: Store) -> None:

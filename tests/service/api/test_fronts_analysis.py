@@ -21,7 +21,7 @@ from slidercrank.optimise.problem.table_columns import choice_field
 from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.designs.design_curves import cycle_table
-from slidercrank.service.designs.stored_designs import design_of, front_of
+from slidercrank.service.designs.stored_designs import design_of_row, front_of_result
 from slidercrank.service.questions.design_analysis import quantities_of_design
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts, test_variables
@@ -91,7 +91,7 @@ def test_an_unknown_topic_is_refused_as_on_the_command_line(solved: Solved, clie
 
 def test_curves_are_those_of_the_model(solved: Solved, client: httpx.Client) -> None:
     found = client.get(f"{solved.path}/designs/2/curves", params={"angles": 8}).json()
-    stored = design_of(load_job(solved.job), solved.result.designs[1])
+    stored = design_of_row(load_job(solved.job), solved.result.designs[1])
     assert found["curves"]["crank_angle_deg"] == pytest.approx([0, 45, 90, 135, 180, 225, 270, 315])
     motion = stored.linkage.at(np.radians(np.arange(0.0, 360.0, 45.0)), speed=stored.mechanism.speed)
     assert found["curves"]["slider_position_mm"] == pytest.approx(1e3 * motion.slider_position)
@@ -200,14 +200,14 @@ def test_stored_designs_have_the_choices_and_the_varying_numbers_of_their_rows()
     problem = parse_job(tomllib.loads(test_variables.JOB))
     front = solve(problem)
     result = result_of(front, "x")
-    again = front_of(problem, result)
+    again = front_of_result(problem, result)
     assert again.variants == front.variants
     assert len(set(front.variants)) > 1
     assert again.dimensions == pytest.approx(front.dimensions, rel=1e-15)
     assert again.values == pytest.approx(front.values, rel=1e-14)
     assert (again.knee(), again.extremes()) == (result.knee, result.extremes)
     for row, given in enumerate(result.designs):
-        stored = design_of(problem, given)
+        stored = design_of_row(problem, given)
         assert stored.part.rod == front.part(row).rod
         assert stored.mechanism == again.mechanism(row)
         for key, value in quantities_of_design(stored.mechanism, stored.linkage)[0].items():
@@ -224,6 +224,6 @@ def test_a_row_of_another_job_is_refused(change: dict[str, Any]) -> None:
     labels = zip(problem.choices, problem.variants[0].labels, strict=True)
     row |= {choice_field(name): label for name, label in labels}
     assert change.keys() <= row.keys()
-    design_of(problem, row)
+    design_of_row(problem, row)
     with pytest.raises(RunError, match="a stored design must match its job"):
-        design_of(problem, {**row, **change})
+        design_of_row(problem, {**row, **change})

@@ -257,8 +257,8 @@ def test_fronts_at_hand_are_bounded_by_their_designs(solved: Solved, store: Stor
 
     jobs = [store_result(store, solved.result, TABLES) for _ in range(4)]
     kept = StoredFronts(store, most_designs=3 * len(solved.result.designs))
-    found = [kept.get(job) for job in jobs]
-    assert all(kept.get(job) is front for job, front in zip(jobs[1:], found[1:], strict=True))
-    assert kept.get(jobs[0]) is not found[0]
-    assert kept.get(jobs[1]) is not found[1]  # the least used one has made room
-    assert kept.get(jobs[3]) is found[3]
+    found = [kept.front_of_job(job) for job in jobs]
+    assert all(kept.front_of_job(job) is front for job, front in zip(jobs[1:], found[1:], strict=True))
+    assert kept.front_of_job(jobs[0]) is not found[0]
+    assert kept.front_of_job(jobs[1]) is not found[1]  # the least used one has made room
+    assert kept.front_of_job(jobs[3]) is found[3]

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.designs.stored_designs import design_of
+from slidercrank.service.designs.stored_designs import design_of_row
 from tests.service.api.fixed_front import Solved, client_of
 
 DESIGN = 3
@@ -29,7 +29,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
 @pytest.fixture(scope="module")
 def linkage(solved: Solved) -> Linkage:
     """Return the linkage of the design that is asked for."""
-    return design_of(load_job(solved.job), solved.result.designs[DESIGN - 1]).linkage
+    return design_of_row(load_job(solved.job), solved.result.designs[DESIGN - 1]).linkage
 
 
 def ask(client: httpx.Client, solved: Solved, **query: Any) -> httpx.Response:

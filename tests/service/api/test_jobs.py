@@ -39,7 +39,7 @@ def test_a_submitted_job_is_the_one_in_the_store(client: httpx.Client, store: St
     assert store.job(job["id"]).limits == Limits(seconds=60, evaluations=1000, memory=10**9)
     assert job["limits"] == limits
     assert job["priority"] == -3
-    assert store.tables(job["id"]) == EXAMPLE
+    assert store.job_tables(job["id"]) == EXAMPLE
     assert client.get(f"/jobs/{job['id']}").json() == job
     assert client.get(f"/jobs/{job['id']}/job").json() == EXAMPLE
     assert client.get(f"/jobs/{job['id']}/files").json()["files"] == ["job.json"]
@@ -49,7 +49,7 @@ def test_a_job_file_in_toml_is_kept_as_it_was_given(client: httpx.Client, store:
     text = f"# by hand, ü\n{fronts.JOB}".encode()
     job = client.post("/jobs", content=text, headers=TOML).json()
     assert job["name"] == "Short test [job]"
-    assert store.tables(job["id"]) == tomllib.loads(text.decode())
+    assert store.job_tables(job["id"]) == tomllib.loads(text.decode())
     file = client.get(f"/jobs/{job['id']}/files/job.toml")
     assert file.content == text
     assert file.headers["content-type"].startswith("application/toml")
@@ -239,11 +239,11 @@ def test_a_copy_has_the_changes_and_the_rest_of_the_job(client: httpx.Client, st
     changes = {"name": "Heavier", "mechanism": {"slider": {"mass": "3 kg"}}, "optimiser": None}
     copy = client.post("/jobs/1/clone", json={"changes": changes}).json()
     assert (copy["name"], copy["priority"], copy["limits"]["seconds"]) == ("Heavier", 7, 5.0)
-    tables = store.tables(2)
+    tables = store.job_tables(2)
     assert tables["mechanism"]["slider"] == {"mass": "3 kg"}
     assert tables["mechanism"]["speed"] == "60 rpm"
     assert "optimiser" not in tables
-    assert store.tables(1) == EXAMPLE
+    assert store.job_tables(1) == EXAMPLE
     other = client.post("/jobs/1/clone", json={"priority": -1, "limits": {}}).json()
     assert (other["priority"], other["limits"]["seconds"]) == (-1, None)
     wrong = client.post("/jobs/1/clone", json={"changes": {"variables": None}})

@@ -110,7 +110,7 @@ def test_a_closed_connection_ends_the_search(
             ended.set()
 
     with monkeypatch.context() as patch:
-        patch.setattr(RoundingSearch, "best", endless)
+        patch.setattr(RoundingSearch, "best_designs", endless)
         with client.stream("POST", path, json={"to": STEPS}, headers=STREAM) as answer:
             next(answer.iter_bytes())
             assert not ended.is_set()

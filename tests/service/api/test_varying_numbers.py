@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.designs.stored_designs import design_of
+from slidercrank.service.designs.stored_designs import design_of_row
 from tests.service import fronts
 from tests.service.api.fixed_front import API, client_of, varied_in
 
@@ -52,7 +52,7 @@ def test_what_if_takes_a_rounded_width(asked: tuple[httpx.Client, str], rounded:
     body = {**lengths(rounded), "values": {"rod_width_mm": rounded["rod_width_mm"] + 3.0}, "angles": 0}
     found = client.post(f"{path}/designs/{DESIGN}/what-if", json=body).json()["design"]
     row = {**client.get(f"{path}/designs/{DESIGN}").json()["design"], **lengths(rounded), **body["values"]}
-    own = design_of(parse_job(tomllib.loads(fronts.VARIED)), row)
+    own = design_of_row(parse_job(tomllib.loads(fronts.VARIED)), row)
     (torque,) = own.part.evaluate(np.array([own.values]), ["peak_torque"])[0]
     assert found["rod_width_mm"] == body["values"]["rod_width_mm"]
     assert found["peak_torque_Nm"] == pytest.approx(torque, rel=1e-9)

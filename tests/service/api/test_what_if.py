@@ -13,7 +13,7 @@ from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.designs.changed_design import judged_variation
 from slidercrank.service.designs.design_selection_options import minimised_values
-from slidercrank.service.designs.stored_designs import design_of
+from slidercrank.service.designs.stored_designs import design_of_row
 from tests.service.api.fixed_front import Solved, client_of
 
 
@@ -85,7 +85,7 @@ def test_designs_that_beat_a_change_are_named(client: httpx.Client, solved: Solv
 
 def test_designs_that_a_change_beats_are_named(solved: Solved) -> None:
     result = solved.result
-    design = design_of(load_job(solved.job), result.designs[2])
+    design = design_of_row(load_job(solved.job), result.designs[2])
     worse = minimised_values(result) + 1e3 * np.arange(1.0, 1.0 + len(result.designs))[:, None]
     found = judged_variation(design, result, worse)
     assert sorted(found.dominates) == list(range(len(result.designs)))

@@ -60,7 +60,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     expect(page.get_by_text("12 of 12 designs listed")).to_be_visible(timeout=2 * PATIENCE)
     worker.join()
     assert store.job(1).name == "Press for bushings"
-    assert store.tables(1)["variables"]["crank"][1] == "60 mm"
+    assert store.job_tables(1)["variables"]["crank"][1] == "60 mm"
 
     page.locator("table.designs tbody a").nth(5).press("Enter")
     page.get_by_label("Crank, step").press("Enter", timeout=PATIENCE)

@@ -91,7 +91,7 @@ def test_a_preset_with_another_stroke_becomes_one_job_of_exactly_these_tables_al
     page.wait_for_url("**/#/jobs/1")
     wanted = shipped["sieve"]
     wanted["constraints"]["stroke"] = {"equals": "260 mm"}
-    assert store.tables(1) == wanted
+    assert store.job_tables(1) == wanted
     assert len(store.jobs()) == 1
     assert store.job(1).name == "Vibrating sieve"
     page.goto(f"{page.url.split('#')[0]}#/new")
@@ -111,7 +111,7 @@ def test_back_from_a_started_run_leads_to_the_form_as_it_was_sent(form: Open, st
     expect(page.get_by_label("stroke, exactly")).to_have_value("260")
     page.get_by_text("Samples, budget, priority").click()
     expect(page.get_by_role("textbox", name="time limit (s)")).to_have_value("90")
-    assert text_of(page) == store.tables(1)
+    assert text_of(page) == store.job_tables(1)
 
 
 def test_a_seed_that_a_browser_would_round_is_refused_as_it_was_typed(form: Open, store: Store) -> None:

@@ -112,7 +112,7 @@ def test_the_search_shows_its_progress_and_can_be_stopped(page: Page, monkeypatc
         finally:
             ended.set()
 
-    monkeypatch.setattr(RoundingSearch, "best", endless)
+    monkeypatch.setattr(RoundingSearch, "best_designs", endless)
     page.get_by_role("button", name="Find round numbers").press("Enter")
     expect(page.locator(".rounding .searching")).to_contain_text("Screening combinations: 5 of 10")
     assert page.get_by_role("progressbar", name="Progress of the search").evaluate("bar => bar.position") == 0.5

@@ -44,7 +44,7 @@ def test_the_shipped_support_is_shown_changed_and_started_with_the_two_ends_of_i
     require_accessible(page)
     page.get_by_role("button", name="Start the search").click()
     page.wait_for_url("**/#/jobs/1")
-    assert store.tables(1)["motion"] == motion
+    assert store.job_tables(1)["motion"] == motion
 
 
 def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(form: Open, store: Store) -> None:

@@ -15,7 +15,7 @@ import pytest
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.designs.design_curves import swing_rows
+from slidercrank.service.designs.design_curves import rows_of_swing_curves
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture, Report, Table
 from slidercrank.service.report.html import html_file
@@ -95,7 +95,7 @@ def test_numbers_of_the_swing_are_those_of_the_quantities(driver: str) -> None:
 def test_extremes_are_those_of_the_curves_of_both_ways(driver: str) -> None:
     design = subject(driver).design
     assert design.part.motion is not None
-    rows = swing_rows(design.mechanism, design.linkage, design.part.motion)
+    rows = rows_of_swing_curves(design.mechanism, design.linkage, design.part.motion)
     drive = next(key for key in rows[0] if key.startswith("drive"))
     said = {cells[0]: cells for cells in table(report(driver), "Extremes").rows}
     title = "force on the slider" if driver == "slider" else "torque on the crank"

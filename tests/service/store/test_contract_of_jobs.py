@@ -30,7 +30,7 @@ def test_a_submitted_job_waits_and_is_what_was_submitted(store: Store) -> None:
     assert store.job(job.id) == job
     assert (job.name, job.state, job.priority, job.most_attempts, job.fence) == ("Feeder", "queued", 3, 5, 0)
     assert job.submitted == pytest.approx(job.due, abs=1.0)
-    assert store.tables(job.id) == TABLES
+    assert store.job_tables(job.id) == TABLES
     assert [(event.number, event.kind, event.data["state"]) for event in store.events(job.id)] == [
         (1, "state", "queued")
     ]

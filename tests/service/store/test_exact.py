@@ -10,8 +10,8 @@ from slidercrank.model.errors import RunError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.designs.selection import result_part
-from slidercrank.service.designs.stored_designs import design_of, front_of, stored_design
+from slidercrank.service.designs.selection import result_with_rows
+from slidercrank.service.designs.stored_designs import design_of_row, front_of_result, stored_design
 from slidercrank.service.designs.trade_offs import trade_offs_of
 from slidercrank.service.runs.result import ExactDesigns, Result, result_of
 from slidercrank.service.store import Store
@@ -87,7 +87,7 @@ def stored(front: ParetoFront, tmp_path_factory: pytest.TempPathFactory) -> tupl
 
 def test_a_stored_front_is_the_one_that_was_found(front: ParetoFront, stored: tuple[Path, Result]) -> None:
     _, result = stored
-    again = front_of(front.problem, result)
+    again = front_of_result(front.problem, result)
     assert again.dimensions.tobytes() == front.dimensions.tobytes()
     assert again.variants == front.variants
     assert len(set(front.variants)) > 1
@@ -100,7 +100,7 @@ def test_a_stored_front_is_the_one_that_was_found(front: ParetoFront, stored: tu
 
 def test_a_part_of_a_front_has_the_exact_designs_of_its_rows(front: ParetoFront, stored: tuple[Path, Result]) -> None:
     rows = [len(front) - 1, 0]
-    part = result_part(stored[1], rows)
+    part = result_with_rows(stored[1], rows)
     assert part.exact is not None
     assert part.exact.dimensions.tobytes() == front.dimensions[rows].tobytes()
 
@@ -108,7 +108,7 @@ def test_a_part_of_a_front_has_the_exact_designs_of_its_rows(front: ParetoFront,
 def test_a_front_read_from_shown_columns_alone_is_the_same_to_rounding(front: ParetoFront) -> None:
     result = result_of(front, "x")
     for row, shown in enumerate(result.designs):
-        assert design_of(front.problem, shown).values == pytest.approx(front.dimensions[row], rel=1e-15)
+        assert design_of_row(front.problem, shown).values == pytest.approx(front.dimensions[row], rel=1e-15)
 
 
 def test_exact_designs_that_are_damaged_in_the_store_are_told(stored: tuple[Path, Result]) -> None:

@@ -39,7 +39,7 @@ class Member(NamedTuple):
     place: float
 
 
-def is_treated_as_shaft(mechanism: Mechanism) -> bool:
+def has_cylinders_or_speed_profile(mechanism: Mechanism) -> bool:
     """Return whether a machine has individually stated cylinders or a speed profile."""
     return mechanism.arrangement is not None or mechanism.speed_profile is not None
 
@@ -50,13 +50,17 @@ def cylinder_count(mechanism: Mechanism) -> int:
 
 
 @memoise_by_machine
-def single_cylinder(mechanism: Mechanism) -> Mechanism:
+def single_cylinder_machine(mechanism: Mechanism) -> Mechanism:
     """Return one cylinder of a machine by itself, at zero bank angle and constant mean speed."""
-    return replace(mechanism, arrangement=None, speed_profile=None) if is_treated_as_shaft(mechanism) else mechanism
+    return (
+        replace(mechanism, arrangement=None, speed_profile=None)
+        if has_cylinders_or_speed_profile(mechanism)
+        else mechanism
+    )
 
 
 @memoise_by_machine
-def member_machines(mechanism: Mechanism) -> tuple[Member, ...]:
+def machines_of_arrangement(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of a machine, each as a separate machine. Raises `InputError` if it has no arrangement.
 
     Gravity is rotated into the axes of each bank; varying gravity keeps its values.
@@ -88,12 +92,12 @@ def require_single_cylinder_at_constant_speed(mechanism: Mechanism, subject: str
         )
 
 
-def cylinder_machines(mechanism: Mechanism) -> tuple[Member, ...]:
+def machine_of_each_cylinder(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of any machine: a machine without an arrangement has only one."""
     return (
-        member_machines(mechanism)
+        machines_of_arrangement(mechanism)
         if mechanism.arrangement is not None
-        else (Member(single_cylinder(mechanism), 0.0, 0.0, 0.0),)
+        else (Member(single_cylinder_machine(mechanism), 0.0, 0.0, 0.0),)
     )
 
 

@@ -16,7 +16,7 @@ from ...optimise.problem.problem import Problem
 from ..presets.jobs import DESIGNS, Design, shipped_jobs
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
-from .job_requests import EXAMPLE, TOML, RequestedJob, problem_of_tables, requested_job
+from .job_requests import EXAMPLE, TOML, RequestedJob, job_in_request, problem_of_tables
 from .problem_documents import problem_responses
 from .settings import SettingsDep
 
@@ -147,7 +147,7 @@ def _preset_design(job: dict[str, Any], design: Design) -> PresetDesign:
 
 
 @router.post("/parse", responses=problem_responses(415))
-def parse_file(request: Annotated[RequestedJob, Depends(requested_job)]) -> Tables:
+def parse_file(request: Annotated[RequestedJob, Depends(job_in_request)]) -> Tables:
     """Return the tables of a job file that is sent as for a submission. The validity of the job is not checked."""
     return Tables(job=dict(request.tables))
 
@@ -182,7 +182,7 @@ def show_schema() -> dict[str, Any]:
 
 
 @router.post("/check", responses=problem_responses(415))
-def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings: SettingsDep) -> Understood:
+def check_job(request: Annotated[RequestedJob, Depends(job_in_request)], settings: SettingsDep) -> Understood:
     """Check a job and return in words how it was understood; nothing is queued. The job is sent as for a submission."""
     return describe_problem(problem_of_tables(request.tables, settings.allowed_quantities), request.tables)
 
