@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.machine.clearance import Bar
+from ..model.machine.links_and_joints import Bar
 from ..model.machine.mechanism import Mechanism, Strength
 from ..model.machine.memoise import memoise_by_batch
 from ..model.machine.raw_machine_vector import Raw

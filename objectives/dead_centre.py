@@ -13,9 +13,9 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from .closed_form import GreatestOfFormulas
 from .kinds import ANGLE, SPEED
+from .lengths_and_time_ratio import STROKE
 from .machine_needs import EVEN_SPEED, Need
 from .machine_needs import SPEED as TURNS
-from .proportions import STROKE
 from .quantity import Array, Formula, Group, Number
 
 

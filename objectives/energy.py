@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..model.machine.cylinders_as_machines import cycle_turns
+from ..model.machine.cylinders_and_turns import cycle_turns
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
@@ -13,8 +13,8 @@ from ..model.signals.averages import torque_averages
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .kinds import ENERGY, RATIO
 from .machine_needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
-from .peak_torque import MEAN_TORQUE
 from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined_values
+from .torque_and_power import MEAN_TORQUE
 
 _TURN = 2.0 * math.pi
 _ROUNDING = 1e-12  # fraction of the friction heat; useful work below it is rounding error

@@ -11,7 +11,7 @@ import numpy as np
 from ..model.cycle.gas_work import GasCycle, cylinder_loads, evaluate_on_gas_cycle
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
-from ..model.machine.cylinders_as_machines import cylinder_count
+from ..model.machine.cylinders_and_turns import cylinder_count
 from ..model.machine.loads.compressor import Compressor
 from ..model.machine.loads.crank_torque import CrankTorque
 from ..model.machine.loads.cylinder import Cylinder

@@ -6,8 +6,8 @@ from functools import partial
 from typing import Literal
 
 from ..model.cycle.gas_work import compressors, cylinder_loads
-from ..model.machine.clearance import Bar
-from ..model.machine.cylinders_as_machines import cylinder_count
+from ..model.machine.cylinders_and_turns import cylinder_count
+from ..model.machine.links_and_joints import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.work_absorption import (
     carries_linkage_forces,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.machine.cylinders_as_machines import cycle_turns, single_cylinder_machine
+from ..model.machine.cylinders_and_turns import cycle_turns, single_cylinder_machine
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers

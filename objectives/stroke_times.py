@@ -8,7 +8,7 @@ import numpy as np
 
 from ..model.cycle.stroke_times import ScaledStrokeTimes, scaled_stroke_times
 from ..model.kernel.arithmetic import STEP
-from ..model.machine.cylinders_as_machines import cylinder_count
+from ..model.machine.cylinders_and_turns import cylinder_count
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers, require_design_columns

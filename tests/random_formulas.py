@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying

@@ -41,7 +41,7 @@ from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.clearance import Bar, Friction, Link, RigidLink
+from ..machine.links_and_joints import Bar, Friction, Link, RigidLink
 from ..machine.mechanism import Mechanism
 
 

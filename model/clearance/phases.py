@@ -17,9 +17,9 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..errors import InputError, SlidercrankError
 from ..linkage.linkage import Linkage
-from ..machine.clearance import Clearance
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
+from ..machine.links_and_joints import Clearance
 from ..machine.loads.crank_torque import require_no_crank_load
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads, Raw, load_structure, raw_vector

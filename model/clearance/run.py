@@ -12,8 +12,8 @@ from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.clearance import Clearance, require_frictionless
-from ..machine.cylinders_as_machines import require_single_cylinder_at_constant_speed
+from ..machine.cylinders_and_turns import require_single_cylinder_at_constant_speed
+from ..machine.links_and_joints import Clearance, require_frictionless
 from ..machine.mechanism import Mechanism
 from .equations import reported_quantities
 from .phases import FLIGHT, Integrator, Trace, build_system

@@ -43,7 +43,7 @@ from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinders_as_machines import TURN, cycle_turns, half_of_cycle_at, machines_of_turns, require_one_turn
+from ..machine.cylinders_and_turns import TURN, cycle_turns, half_of_cycle_at, machines_of_turns, require_one_turn
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism

@@ -27,7 +27,7 @@ from ..kernel.arithmetic import STEP
 from ..kernel.batches import require_full_rotation
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinders_as_machines import (
+from ..machine.cylinders_and_turns import (
     cycle_turns,
     cylinder_count,
     half_of_cycle_at,

@@ -11,8 +11,8 @@ from ..dynamics.torque import Balance, balance_before_pin_force
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.clearance import Friction
 from ..machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
+from ..machine.links_and_joints import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import load_structure, raw_vector
 from .cycle import cycle

@@ -19,7 +19,7 @@ from ..dynamics.torque import reflected_inertia, shaking_force_and_moment
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import Arrangement
-from ..machine.cylinders_as_machines import TURN, cycle_turns, machine_of_first_turn, machines_of_arrangement
+from ..machine.cylinders_and_turns import TURN, cycle_turns, machine_of_first_turn, machines_of_arrangement
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_added_masses_only, raw_vector

@@ -29,7 +29,7 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kinematics.geometry import least_transmission_angle
 from ..linkage.linkage import Linkage
-from ..machine.clearance import Friction
+from ..machine.links_and_joints import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Raw
 from ..machine.raw_numbers_of_designs import raw_number_at_slot, require_design_columns

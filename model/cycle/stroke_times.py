@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kinematics import geometry
 from ..linkage.linkage import Linkage
-from ..machine.cylinders_as_machines import machine_of_each_cylinder
+from ..machine.cylinders_and_turns import machine_of_each_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.speed_profile import Profile
 

@@ -11,9 +11,9 @@ from typing import Literal
 from ..checks import require_all_finite, require_field_types, require_numbers, store_as_tuples
 from ..errors import InputError
 from .arrangement import Arrangement
-from .clearance import Bar, Clearance, Counterweight, Friction, Link, RigidLink
 from .drive import Drive
 from .lever import Lever, require_lever_alone
+from .links_and_joints import Bar, Clearance, Counterweight, Friction, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .loads.load_text import join_range_ends
 from .speed_profile import Profile

@@ -13,8 +13,8 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
-from .clearance import Bar, Link
-from .cylinders_as_machines import require_one_turn
+from .cylinders_and_turns import require_one_turn
+from .links_and_joints import Bar, Link
 from .loads.load import Load
 from .loads.registry import kernel_code_of_load
 from .loads.stroke_force import StrokeForce

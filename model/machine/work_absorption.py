@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Hashable
 from dataclasses import replace
 
-from .clearance import Bar, Link, RigidLink
+from .links_and_joints import Bar, Link, RigidLink
 from .loads.load import Load
 from .mechanism import Mechanism
 from .memoise import memoise_by_machine

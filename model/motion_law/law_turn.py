@@ -21,7 +21,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
-from ..machine.cylinders_as_machines import cycle_turns
+from ..machine.cylinders_and_turns import cycle_turns
 from ..machine.mechanism import Mechanism
 from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, WEIGHTS
 from ..transient.crank_equation import TURN, CrankEquation

@@ -20,7 +20,7 @@ from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import require_full_rotation, run_in_chunks
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.cylinders_as_machines import has_cylinders_or_speed_profile, machine_of_first_turn
+from ..machine.cylinders_and_turns import has_cylinders_or_speed_profile, machine_of_first_turn
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import Array
-from ..machine.cylinders_as_machines import TURN, cycle_turns
+from ..machine.cylinders_and_turns import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
 from .panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from .peaks import find_peaks

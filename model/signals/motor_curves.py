@@ -22,7 +22,7 @@ from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import require_full_rotation, run_in_chunks
-from ..machine.cylinders_as_machines import cylinder_count
+from ..machine.cylinders_and_turns import cylinder_count
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation, run_in_chunks
-from ..machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
+from ..machine.cylinders_and_turns import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
 from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
 from ..machine.raw_numbers_of_designs import raw_machine_numbers

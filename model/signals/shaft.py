@@ -14,7 +14,7 @@ from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
 from ..dynamics.torque_with_friction import least_determinacy_margin, needs_friction_kernel
 from ..kinematics import geometry
-from ..machine.cylinders_as_machines import (
+from ..machine.cylinders_and_turns import (
     TURN,
     half_of_cycle_at,
     machine_of_each_cylinder,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..machine.cylinders_as_machines import TURN
+from ..machine.cylinders_and_turns import TURN
 from .peak_search import Segments
 
 FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.batches import run_in_chunks
-from ..machine.cylinders_as_machines import TURN, cylinder_count, machine_of_each_cylinder, single_cylinder_machine
+from ..machine.cylinders_and_turns import TURN, cylinder_count, machine_of_each_cylinder, single_cylinder_machine
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import load_knot_count

@@ -2,7 +2,7 @@
 
 from ..arrays import Array
 from ..dynamics.segments import CycleWindow
-from ..machine.cylinders_as_machines import machine_of_first_turn
+from ..machine.cylinders_and_turns import machine_of_first_turn
 from ..machine.loads.crank_torque import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine

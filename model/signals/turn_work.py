@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..dynamics.segments import CycleWindow
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
+from ..machine.cylinders_and_turns import cycle_turns, has_cylinders_or_speed_profile, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from .shaft_statistics import shaft_turn_work

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..kinematics import geometry
-from ..machine.cylinders_as_machines import shift_angles_into_half
+from ..machine.cylinders_and_turns import shift_angles_into_half
 from ..machine.mechanism import Mechanism
 
 

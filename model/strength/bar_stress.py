@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..machine.cylinders_as_machines import TURN, machines_of_turns
+from ..machine.cylinders_and_turns import TURN, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..signals.two_turn_peaks import angles_within_both_turns
 from .section_forces import CRANK, Stress, stress_at_length_fraction

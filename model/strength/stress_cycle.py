@@ -29,7 +29,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..kernel.batches import require_full_rotation, run_in_chunks
-from ..machine.cylinders_as_machines import machines_of_turns
+from ..machine.cylinders_and_turns import machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..signals.two_turn_peaks import angles_within_both_turns

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinders_as_machines import (
+from ..machine.cylinders_and_turns import (
     Member,
     cycle_turns,
     half_of_cycle_at,

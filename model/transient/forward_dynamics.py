@@ -24,7 +24,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..machine.cylinders_as_machines import cycle_turns
+from ..machine.cylinders_and_turns import cycle_turns
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .crank_equation import NEAREST, TURN, Span

@@ -22,7 +22,7 @@ from ..cycle.multi_cylinder import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinders_as_machines import TURN, cycle_turns
+from ..machine.cylinders_and_turns import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
 from ..signals.panel_polynomials import Extreme, larger_extreme, resolve_curves, wrap_into_cycle
 

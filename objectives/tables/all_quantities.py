@@ -21,7 +21,7 @@ from ...model.cycle.stroke_times import slow_stroke, time_ratio
 from ...model.kinematics.geometry import offset_without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
-from ...model.machine.clearance import Friction
+from ...model.machine.links_and_joints import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.averages import torque_averages
 from ...model.signals.first_peak import first_peaks
@@ -29,13 +29,13 @@ from ...model.signals.signals import Signal
 from ...model.swing.swing import Swing
 from ..force_transmission import SELF_LOCKING_MARGIN, TRANSMISSION_ANGLE
 from ..formula.quantity import FormulaQuantity
+from ..lengths_and_time_ratio import STROKE, TIME_RATIO
 from ..motion_deviation import MotionDeviation
 from ..own.quantity import OwnQuantity
-from ..peak_torque import MEAN_TORQUE, PEAK_TORQUE, RMS_TORQUE
-from ..proportions import STROKE, TIME_RATIO
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from ..robust.quantity import RobustQuantity
+from ..torque_and_power import MEAN_TORQUE, PEAK_TORQUE, RMS_TORQUE
 from .design_input import column_of_variable
 from .evaluate_quantities import can_run_despite_friction
 from .swing_columns import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE

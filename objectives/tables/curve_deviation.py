@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinders_as_machines import TURN, cycle_turns
+from ...model.machine.cylinders_and_turns import TURN, cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ..kinds import Kind
 from ..quantity import Array

@@ -20,8 +20,8 @@ from ...model.cycle.self_locking import locking_margin
 from ...model.dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
-from ...model.machine.clearance import Friction
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
+from ...model.machine.links_and_joints import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.panel_polynomials import index_of_first_maximum, wrap_into_cycle
 from ..kinds import Kind

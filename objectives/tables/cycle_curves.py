@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_slider_derivative
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import direction_angle, real_or_complex_array
-from ...model.machine.cylinders_as_machines import cycle_turns, cylinder_count
+from ...model.machine.cylinders_and_turns import cycle_turns, cylinder_count
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.motor_curves import MotorCurve, motor_curve
 from ..kinds import (

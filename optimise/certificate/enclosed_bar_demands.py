@@ -17,7 +17,7 @@ from ...model.arrays import Array
 from ...model.dynamics.torque import Forces
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion
-from ...model.machine.cylinders_as_machines import machines_of_turns, single_cylinder_machine
+from ...model.machine.cylinders_and_turns import machines_of_turns, single_cylinder_machine
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Raw

@@ -23,7 +23,7 @@ from ...model.dynamics.torque import Forces, forces_without_friction
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
-from ...model.machine.cylinders_as_machines import (
+from ...model.machine.cylinders_and_turns import (
     TURN,
     Member,
     has_cylinders_or_speed_profile,

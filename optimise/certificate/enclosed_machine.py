@@ -13,7 +13,7 @@ from ...model.arrays import Array, Mask
 from ...model.dynamics.torque import load_without_pieces
 from ...model.kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ...model.kinematics.position import motion
-from ...model.machine.cylinders_as_machines import TURN
+from ...model.machine.cylinders_and_turns import TURN
 from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.engine import LimitedPressure

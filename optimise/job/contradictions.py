@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.errors import InfeasibleError, InputError, JobError
-from ...model.machine.clearance import Bar
+from ...model.machine.links_and_joints import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import number_at_path
 from ...objectives.bar_pieces import LINKS, NEAR
+from ...objectives.lengths_and_time_ratio import STROKE, TIME_RATIO
 from ...objectives.link_strength import LinkStress
-from ...objectives.proportions import STROKE, TIME_RATIO
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.units import quote
 from ..feasibility.impossible_swing_reasons import require_swinging

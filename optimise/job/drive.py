@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.errors import JobError
 from ...model.machine import drive as model
-from ...model.machine.clearance import Clearance, Friction, Joint, Law, Pin
+from ...model.machine.links_and_joints import Clearance, Friction, Joint, Law, Pin
 from ...model.machine.mechanism import Mechanism
 from ..problem.question_registry import Change, Remark
 from .named_files import table_in

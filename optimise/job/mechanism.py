@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, model_
 
 from ...model.errors import InputError
 from ...model.machine.arrangement import MOST, Arrangement
-from ...model.machine.clearance import Bar, Counterweight, Link, RigidLink
+from ...model.machine.links_and_joints import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, DeadCentre, SliderDistances, Tolerances, Window
 from ...objectives.units import quote
 from .crank_speed import CrankSpeedPart

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BaseModel, Field
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
-from ...model.machine.cylinders_as_machines import turns_per_cycle
+from ...model.machine.cylinders_and_turns import turns_per_cycle
 from ...model.machine.mechanism import Mechanism, SliderDistances
 from ...model.swing.swing import Swing
 from ...objectives.units import quote

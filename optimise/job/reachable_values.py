@@ -12,7 +12,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.bounds_over_ranges import CLEAR, LengthRanges
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.quantity import FormulaQuantity, linear_equation_of
-from ...objectives.proportions import (
+from ...objectives.lengths_and_time_ratio import (
     CRANK_ANGLE_RATIO,
     ROD_TO_CRANK,
     ROD_TO_OFFSET,

@@ -12,9 +12,9 @@ from ...model.tolerance.error_distributions import Shape
 from ...objectives import kinds
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.kinds import PRESSURE
-from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.robust.quantity import SAMPLES, Case
 from ...objectives.robust.worst_points import toleranced_columns
+from ...objectives.torque_and_power import PEAK_TORQUE
 from ..problem.problem import Problem
 from ..problem.robust_problem import Robust, robust_problem
 from ..problem.tolerance_costs import Cost, Costs, SectionLimits

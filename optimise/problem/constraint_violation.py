@@ -8,10 +8,10 @@ from ...model.arrays import Array, Mask
 from ...model.cycle.gas_work import compressor_may_deliver_nothing
 from ...objectives.flow import VOLUMETRIC_EFFICIENCY
 from ...objectives.force_transmission import SELF_LOCKING_MARGIN, TRANSMISSION_ANGLE
+from ...objectives.lengths_and_time_ratio import TIME_RATIO
 from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
 from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
 from ...objectives.lever_turn import ARM_TRANSMISSION_ANGLE
-from ...objectives.proportions import TIME_RATIO
 from ...objectives.quantity import Quantity
 from ...objectives.robust.quantity import RobustQuantity
 from ...objectives.stroke_times import STROKE_TIME_RATIOS

@@ -1,7 +1,7 @@
 """Contradictory problems that a search would not notice, such as objectives that are zero for every design."""
 
 from ...model.errors import InfeasibleError, InputError
-from ...objectives.proportions import TIME_RATIO
+from ...objectives.lengths_and_time_ratio import TIME_RATIO
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from .problem import Problem
 from .question_registry import Change, Remark

@@ -15,7 +15,7 @@ from ...model.errors import InputError, number_in_si_and_usual_unit, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import real_or_complex_array
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.formula.quantity import FormulaQuantity

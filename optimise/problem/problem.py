@@ -46,7 +46,7 @@ from .table_columns import (
 from .tolerance_costs import Costs, SectionLimits
 
 if TYPE_CHECKING:
-    from ...model.swing.summary import SwingSummary
+    from ...model.swing.request_and_summary import SwingSummary
     from ...model.swing.swing import Swing
     from ...model.swing.swing_types import Driver, Law, Side
 
@@ -350,7 +350,7 @@ class Problem:
         `InputError` for a dead point that the slider cannot pass, for ends that are missing or of two kinds, and as
         `analyse` does.
         """
-        from ...model.swing.summary import SwingRequest, resolve_swing, summarise_swing
+        from ...model.swing.request_and_summary import SwingRequest, resolve_swing, summarise_swing
 
         self._require_no_choices()
         requested_names = SwingRequest(

@@ -16,8 +16,8 @@ from ...model.arrays import Array
 from ...model.checks import store_as_tuples
 from ...model.errors import InputError, number_in_si_and_usual_unit, warn_user
 from ...objectives.kinds import ANGLE
-from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.registry import FACTS, QUANTITIES, first_names_text
+from ...objectives.torque_and_power import PEAK_TORQUE
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {

@@ -19,7 +19,7 @@ from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.expression import Call, Name, Node, Number
 from ...objectives.formula.quantity import FormulaQuantity, linear_form
-from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE, TIME_RATIO
+from ...objectives.lengths_and_time_ratio import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE, TIME_RATIO
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from .problem import Problem

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.loads.stroke_force import StrokeForce
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import Varying

@@ -20,7 +20,7 @@ from ...model.kinematics import geometry
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.expression import Linear
-from ...objectives.proportions import CRANK_ANGLE_RATIO, ROD_TO_CRANK, ROD_TO_OFFSET, STROKE, TIME_RATIO
+from ...objectives.lengths_and_time_ratio import CRANK_ANGLE_RATIO, ROD_TO_CRANK, ROD_TO_OFFSET, STROKE, TIME_RATIO
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.restatement import restate_constraint

@@ -23,7 +23,7 @@ from ...model.swing.end_angles import swing_start_column
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.expression import SIZE, Linear, linear_form_of_unknown
 from ...objectives.formula.quantity import FormulaQuantity, linear_equation_of
-from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET
+from ...objectives.lengths_and_time_ratio import ROD_TO_CRANK, ROD_TO_OFFSET
 from ...objectives.quantity import Quantity
 from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..problem.problem import Problem

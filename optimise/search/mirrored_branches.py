@@ -11,7 +11,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.cylinders_as_machines import has_cylinders_or_speed_profile
+from ...model.machine.cylinders_and_turns import has_cylinders_or_speed_profile
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES

@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ...model.machine.loads.load import Load
 from ...model.machine.loads.position_table import PositionTable
-from ...objectives.proportions import STROKE
+from ...objectives.lengths_and_time_ratio import STROKE
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
 from ..problem.question_registry import Change, Remark

@@ -32,7 +32,7 @@ from ...model.cycle.multi_cylinder import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
-from ...model.machine.cylinders_as_machines import require_single_cylinder_at_constant_speed
+from ...model.machine.cylinders_and_turns import require_single_cylinder_at_constant_speed
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.optional_packages import import_extra

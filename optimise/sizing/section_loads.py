@@ -17,7 +17,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal

@@ -20,8 +20,8 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
-from ...model.machine.clearance import Bar, require_frictionless
-from ...model.machine.cylinders_as_machines import require_single_cylinder_at_constant_speed
+from ...model.machine.cylinders_and_turns import require_single_cylinder_at_constant_speed
+from ...model.machine.links_and_joints import Bar, require_frictionless
 from ...model.machine.mechanism import Material, Mechanism
 from ...model.optional_packages import import_extra
 from ..problem.tolerance_costs import SectionLimits

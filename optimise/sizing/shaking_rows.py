@@ -25,8 +25,8 @@ from ...model.arrays import Array
 from ...model.cycle.multi_cylinder import shaking_curves
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.linkage import Linkage
-from ...model.machine.clearance import Bar, Counterweight, Link, RigidLink
 from ...model.machine.design import link_properties
+from ...model.machine.links_and_joints import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Mechanism
 
 NAMES = ("c along", "c across", "m", "b along", "b across", "I")

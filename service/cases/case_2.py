@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.classical.loop_equations import solve_loop
 from ...model.linkage.linkage import Linkage
-from ...model.machine.clearance import Bar, Clearance
+from ...model.machine.links_and_joints import Bar, Clearance
 from ...model.machine.mechanism import Mechanism
 from .printed_values import Numbers
 

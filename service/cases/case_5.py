@@ -14,7 +14,7 @@ from ...model.classical.approximations import (
     series_torque,
 )
 from ...model.linkage.linkage import Linkage
-from ...model.machine.clearance import RigidLink
+from ...model.machine.links_and_joints import RigidLink
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal

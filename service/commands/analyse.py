@@ -189,8 +189,8 @@ def _write_cycle_csv(mechanism: Mechanism, linkage: Linkage, file: Path, units: 
 
 def _remove_undefined_numbers(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
     """Remove numbers that are undefined without a job or a speed; return the reasons in words."""
-    from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
+    from ...objectives.torque_and_power import PEAK_TORQUE
 
     if not alone:
         return []

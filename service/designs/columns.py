@@ -68,9 +68,9 @@ def find_column(name: str, keys: Collection[str]) -> Column:
 @functools.cache
 def _display_group_of_column(key: str) -> Group:
     """Return the group under which a metric column is shown."""
-    from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.quantity import Group
     from ...objectives.registry import FACTS
+    from ...objectives.torque_and_power import PEAK_TORQUE
 
     groups = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}
     groups |= {f"{PEAK_TORQUE.name}_angle_deg": PEAK_TORQUE.group, "slow_stroke": Group.MOTION}

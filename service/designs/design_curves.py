@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves

@@ -49,7 +49,11 @@ def cost_of_change(names: Sequence[str], results: Sequence[Result], system: Syst
     """
     shared = [item for item in _shared_objectives(results) if item.target is None] if len(results) == 2 else []
     words: dict[str, list[str]] = {"costs": [], "gains": [], "does not change": []}
-    best = [_minimised_shared_objectives(result, shared).min(axis=0).tolist() for result in results] if shared else [[], []]
+    best = (
+        [_minimised_shared_objectives(result, shared).min(axis=0).tolist() for result in results]
+        if shared
+        else [[], []]
+    )
     for objective, old, new in zip(shared, *best, strict=True):
         ends = [_with_unit(value, objective, system) for value in (old, new)]
         if not np.isfinite([old, new]).all():

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ...model.cycle.gas_work import cylinder_loads
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.machine.clearance import Bar
+from ...model.machine.links_and_joints import Bar
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import LENGTH, System, metric_unit_in
 from ..designs.length_with_tolerance import format_length

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
-from ...model.machine.clearance import Bar
+from ...model.machine.links_and_joints import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, dead_point_angles, require_swing, swing_between_crank_angles
 from . import layers as on

@@ -15,7 +15,7 @@ from ...model.cycle.stroke_times import slow_stroke
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal

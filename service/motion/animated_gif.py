@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.cycle.gas_work import cylinder_loads, indicator_diagram
 from ...model.linkage.linkage import Linkage
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing

@@ -104,10 +104,10 @@ def with_undefined_values(
     row: row with the `analysis_columns` a table. custom: custom quantities of the job. swing: swing instead of full
     rotation.
     """
-    from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.all_quantities import missing_value_reason
     from ...objectives.tables.swing_columns import PEAK_TORQUE_ANGLE
+    from ...objectives.torque_and_power import PEAK_TORQUE
 
     reasons: dict[str, str] = {}
     for quantity in (*QUANTITIES.values(), *custom):

@@ -4,7 +4,7 @@ import time
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import count_with_noun, metric_key, unit_text
-from ...objectives.proportions import STROKE
+from ...objectives.lengths_and_time_ratio import STROKE
 from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..designs.changed_design import Variation
 from ..designs.columns import choice_column_keys, find_column

@@ -3,7 +3,7 @@
 import math
 from functools import cached_property
 
-from ...model.swing.summary import SwingSummary, error_shares, summarise_swing
+from ...model.swing.request_and_summary import SwingSummary, error_shares, summarise_swing
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
 from ...objectives.tables.swing_curves import driven_side_name, kind_of_driven_side_error

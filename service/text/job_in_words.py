@@ -6,8 +6,8 @@ from typing import Any
 
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.clearance import Bar, Friction, Link
-from ...model.machine.cylinders_as_machines import cycle_turns
+from ...model.machine.cylinders_and_turns import cycle_turns
+from ...model.machine.links_and_joints import Bar, Friction, Link
 from ...model.machine.loads.load_text import join_range_ends
 from ...model.machine.mechanism import Mechanism, Strength, Tolerance
 from ...model.machine.varying_numbers import Varying

@@ -118,7 +118,7 @@ def finite_or_none(value: Any) -> float | None:
 
 def usual_keys(result: Result) -> list[str]:
     """Return the columns of dimensions, extra variables, stroke and objectives."""
-    from ...objectives.proportions import STROKE
+    from ...objectives.lengths_and_time_ratio import STROKE
 
     names = list(result.designs[0])
     dimensions = [find_column(name, names).key for name in DIMENSIONS]

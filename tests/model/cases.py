@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Bar, Counterweight, Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.drag import Drag

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links_and_joints import Clearance
 from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.virtual_work import body
 

@@ -10,7 +10,7 @@ import pytest
 from slidercrank.model.clearance.run import simulate
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links_and_joints import Clearance
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import signal_averages

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism

@@ -14,7 +14,7 @@ from slidercrank.model.clearance import equations
 from slidercrank.model.clearance.phases import Integrator, build_system
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Clearance, Joint
+from slidercrank.model.machine.links_and_joints import Bar, Clearance, Joint
 from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.loose_joint import accelerations, state_of

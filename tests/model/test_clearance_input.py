@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.clearance.run import simulate
 from slidercrank.model.errors import AssemblyError, InputError, SlidercrankError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Clearance, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, Clearance, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)

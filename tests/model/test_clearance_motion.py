@@ -12,7 +12,7 @@ from slidercrank.model.clearance.run import ClearanceProgress, ClearanceRun, sim
 from slidercrank.model.clearance.statistics import Estimate, clearance_statistics
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Clearance
+from slidercrank.model.machine.links_and_joints import Bar, Clearance
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism

@@ -13,8 +13,8 @@ from slidercrank.model.clearance.run import simulate as simulate_clearance
 from slidercrank.model.cycle.cycle import cycle, cycle_energies
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Clearance, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive
+from slidercrank.model.machine.links_and_joints import Clearance, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying

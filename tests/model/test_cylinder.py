@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from slidercrank.model.cycle.cycle import breakpoints, cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
 from slidercrank.model.machine.drive import Drive, LinearMotor
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.model.machine.mechanism import Mechanism

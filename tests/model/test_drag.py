@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.drive import Drive, LinearMotor
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.mechanism import Mechanism

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import Cycle, cycle
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.multi_cylinder import ShakingCurves, shaking_curves
-from slidercrank.model.machine.clearance import Counterweight, Friction, RigidLink
+from slidercrank.model.machine.links_and_joints import Counterweight, Friction, RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

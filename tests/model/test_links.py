@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import quad
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.clearance import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.raw_machine_vector import load_structure, raw_vector
 from tests.model.cases import MACHINES, random_designs

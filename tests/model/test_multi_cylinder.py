@@ -13,8 +13,8 @@ from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement, single_cylinder_machine
+from slidercrank.model.machine.cylinders_and_turns import machines_of_arrangement, single_cylinder_machine
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks

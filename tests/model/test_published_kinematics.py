@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array
 

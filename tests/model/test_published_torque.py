@@ -12,7 +12,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import find_peaks

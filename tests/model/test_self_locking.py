@@ -13,7 +13,7 @@ from slidercrank.model.cycle.locked_angles import locking_states, locking_verdic
 from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.signals.averages import torque_averages

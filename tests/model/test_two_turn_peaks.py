@@ -15,7 +15,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.cylinders_as_machines import machines_of_turns
+from slidercrank.model.machine.cylinders_and_turns import machines_of_turns
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable

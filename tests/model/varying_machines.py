@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from slidercrank.model.machine.clearance import Bar, Counterweight, Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.machine.clearance import Bar, Link
+from slidercrank.model.machine.links_and_joints import Bar, Link
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.arrays import Array
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.swing import CRANK_TURN

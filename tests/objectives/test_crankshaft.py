@@ -16,7 +16,7 @@ from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement, single_cylinder_machine
+from slidercrank.model.machine.cylinders_and_turns import machines_of_arrangement, single_cylinder_machine
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.cylinders_as_machines import cycle_turns
+from slidercrank.model.machine.cylinders_and_turns import cycle_turns
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.quantity import Array

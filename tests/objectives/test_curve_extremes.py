@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce

@@ -12,8 +12,8 @@ import pytest
 
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive
+from slidercrank.model.machine.links_and_joints import Friction, RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import Energies, cycle_energies
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.spring import Spring

@@ -19,7 +19,7 @@ import slidercrank as sc
 from slidercrank.model.cycle.cycle import cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.cylinder import Cylinder

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Bar, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, RigidLink
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES

@@ -8,7 +8,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import quantity

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, SliderDistances
 from slidercrank.model.machine.varying_numbers import Varying

@@ -13,9 +13,9 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.lever import Lever
 from slidercrank.model.machine.lever_cylinder import Cylinder
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying

@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import eigh_tridiagonal
 
 from slidercrank.model.cycle.cycle import breakpoints
-from slidercrank.model.machine.clearance import Bar, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Criterion, Mechanism

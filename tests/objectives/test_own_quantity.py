@@ -15,7 +15,7 @@ import slidercrank as sc
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import RATIO, kind_displayed_in
 from slidercrank.objectives.own.designs import Designs, magnitude

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.machine.clearance import Bar, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES

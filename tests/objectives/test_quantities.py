@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.drive_train import MotorSpeed
 from slidercrank.objectives.quantity import Quantity

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.summary import summarise_swing
+from slidercrank.model.swing.request_and_summary import summarise_swing
 from slidercrank.model.swing.swing import Swing, slow_swing
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.swing_columns import quantities_for_swing, swing_quantities, swing_quantity_facts

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Bar, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Criterion, Material, Mechanism, Strength
 from slidercrank.objectives.registry import QUANTITIES

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.machine.clearance import Friction, RigidLink
+from slidercrank.model.machine.links_and_joints import Friction, RigidLink
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.clearance import Bar
 from slidercrank.model.machine.drive import Drive
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, SliderDistances
 from slidercrank.model.machine.varying_numbers import Varying

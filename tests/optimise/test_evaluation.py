@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

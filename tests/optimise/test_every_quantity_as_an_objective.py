@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.problem.requirements import Sense

@@ -14,7 +14,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links_and_joints import Clearance
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.problem_of_job import problem_of
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.objectives.force_transmission import SELF_LOCKING_MARGIN
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import Job, parse_job

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.tables.design_input import column_of_variable
 from slidercrank.optimise.job import parse_job

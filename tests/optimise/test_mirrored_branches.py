@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring

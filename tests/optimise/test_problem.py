@@ -15,7 +15,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
-from slidercrank.objectives.peak_torque import RMS_TORQUE
+from slidercrank.objectives.torque_and_power import RMS_TORQUE
 from slidercrank.optimise.front.choose_design import topsis_closeness
 from slidercrank.optimise.problem.problem import Settings, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.objectives.proportions import TIME_RATIO
+from slidercrank.objectives.lengths_and_time_ratio import TIME_RATIO
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.constraint_violation import constraints_with_floors

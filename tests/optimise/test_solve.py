@@ -14,7 +14,7 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.kernel.batches import poll_interruption
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES

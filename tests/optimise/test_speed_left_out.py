@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES

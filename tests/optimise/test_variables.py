@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import minimize
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.clearance import Counterweight, RigidLink
+from slidercrank.model.machine.links_and_joints import Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES

@@ -14,7 +14,7 @@ from slidercrank.model.kinematics import geometry
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.inverse_kinematics import crank_angle_at, crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks

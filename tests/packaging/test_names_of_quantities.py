@@ -78,4 +78,4 @@ def test_a_quantity_is_named_in_its_own_file_and_at_most_one_other(name: str) ->
 
 
 def test_the_search_for_names_finds_one_that_is_written_down() -> None:
-    assert "objectives/proportions.py" in files_by_quantity()["stroke"]
+    assert "objectives/lengths_and_time_ratio.py" in files_by_quantity()["stroke"]

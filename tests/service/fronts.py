@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES

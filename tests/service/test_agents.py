@@ -440,7 +440,7 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
         assert f"  {of.name}: {of.title}; such as {of.name} = {{ {'max' if of.better == 'low' else 'min'} = " in bounds
     for name, question in DESIGN_QUESTIONS.items():
         assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.record_type)
-    assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
+    assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.torque_and_power"))
 
 
 def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:

@@ -13,7 +13,7 @@ from matplotlib.image import imread
 
 from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Counterweight
+from slidercrank.model.machine.links_and_joints import Counterweight
 from slidercrank.model.machine.mechanism import Window
 from slidercrank.model.tolerance.exact_worst_case import first_order_position_errors
 from slidercrank.optimise.job import load_job

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.links_and_joints import Clearance
 from slidercrank.service.cases import case_2, figures
 from slidercrank.service.cases.case_table import collect_cases
 from slidercrank.service.cases.figures import draw_cases

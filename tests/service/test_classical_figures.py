@@ -15,7 +15,7 @@ import pytest
 from slidercrank.model.classical.approximations import TORQUE, compare_approximations
 from slidercrank.model.classical.loop_equations import motion_polygons, static_forces
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases

@@ -15,7 +15,7 @@ from slidercrank.model.clearance.run import ClearanceRun
 from slidercrank.model.clearance.statistics import clearance_statistics
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Clearance
+from slidercrank.model.machine.links_and_joints import Bar, Clearance
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
 from slidercrank.service.figures.panel_drawing import draw_figure

@@ -10,7 +10,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.cylinders_as_machines import single_cylinder_machine
+from slidercrank.model.machine.cylinders_and_turns import single_cylinder_machine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.sizing.counterweight import best_balance

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes

@@ -17,7 +17,7 @@ from rich.console import Console
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Counterweight, Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES

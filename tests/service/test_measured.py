@@ -16,7 +16,7 @@ from rich.console import Console
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.objectives.tables.curve_deviation import curve_deviations
 from slidercrank.service.designs import measured_curves_file
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves, text_of_measured_file

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.panel_polynomials import index_of_first_maximum, wrap_into_cycle

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.mechanism import Branch, Mechanism, SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics

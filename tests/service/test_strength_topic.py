@@ -13,7 +13,7 @@ from rich.console import Console
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Counterweight
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.bar_pieces import LINKS

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.links_and_joints import Friction
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics

@@ -9,7 +9,7 @@ from ....model.arrays import Array
 from ....model.cycle.multi_cylinder import MultiCylinderCurves, ShakingCurves, multi_cylinder_curves, shaking_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Counterweight
+from ....model.machine.links_and_joints import Counterweight
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import signal_averages
 from ....model.signals.signals import Signal

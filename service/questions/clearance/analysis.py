@@ -13,7 +13,7 @@ from ....model.clearance.run import ClearanceProgress, ClearanceRun, Status, sim
 from ....model.clearance.statistics import clearance_statistics
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Joint, Law
+from ....model.machine.links_and_joints import Joint, Law
 from ....model.machine.mechanism import Mechanism
 from ...render.blocks import Block, Table, Text, Unit, column, heading, note, sentence, value_from_record, words
 from ..record_types import Keys, Note

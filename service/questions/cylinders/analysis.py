@@ -7,7 +7,7 @@ import numpy as np
 
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinders_as_machines import (
+from ....model.machine.cylinders_and_turns import (
     Member,
     cycle_turns,
     machines_of_arrangement,

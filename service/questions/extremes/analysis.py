@@ -8,7 +8,7 @@ import numpy as np
 from ....model.cycle.self_locking import locking_reason
 from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinders_as_machines import cycle_turns
+from ....model.machine.cylinders_and_turns import cycle_turns
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.machine_needs import ONE_TIMING

@@ -9,8 +9,8 @@ import numpy as np
 from ....model.cycle.cycle import breakpoints, cycle, cycle_energies
 from ....model.cycle.locked_angles import locking_verdict
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Friction
-from ....model.machine.cylinders_as_machines import cycle_turns, has_cylinders_or_speed_profile, single_cylinder_machine
+from ....model.machine.cylinders_and_turns import cycle_turns, has_cylinders_or_speed_profile, single_cylinder_machine
+from ....model.machine.links_and_joints import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import torque_averages
 from ....model.signals.signals import Signal

@@ -9,7 +9,7 @@ import numpy as np
 from ....model.cycle.gas_work import burning_end_angle, cylinder_loads, indicator_diagram, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinders_as_machines import cycle_turns
+from ....model.machine.cylinders_and_turns import cycle_turns
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit

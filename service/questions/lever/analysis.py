@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import RigidLink
+from ....model.machine.links_and_joints import RigidLink
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.swing_summary import LeverPoint, LeverSummary, summarise_swing

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinders_as_machines import cycle_turns
+from ....model.machine.cylinders_and_turns import cycle_turns
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ANGLE, count_with_noun, name_and_kind_of_key
 from ....objectives.tables.curve_deviation import Deviation, curve_deviations

@@ -13,8 +13,8 @@ from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.multi_cylinder import multi_cylinder_curves, shaking_curves
 from ....model.cycle.self_locking import locking_margin
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Friction
-from ....model.machine.cylinders_as_machines import TURN, cycle_turns, machine_of_each_cylinder
+from ....model.machine.cylinders_and_turns import TURN, cycle_turns, machine_of_each_cylinder
+from ....model.machine.links_and_joints import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import signal_averages, torque_averages
 from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve

@@ -15,7 +15,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.dead_centre import DWELL_ANGLE, angle_and_travel_rate_before_dead_centre
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
-from ....objectives.peak_torque import PEAK_TORQUE
+from ....objectives.torque_and_power import PEAK_TORQUE
 from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, values_from_record
 from ..peaks import lengths_row

@@ -10,13 +10,13 @@ from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cyl
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement
-from ....model.machine.cylinders_as_machines import machines_of_arrangement
+from ....model.machine.cylinders_and_turns import machines_of_arrangement
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....objectives.flow import FLOW, FLOW_RIPPLE, liquid_pumps
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
-from ....objectives.peak_torque import MEAN_TORQUE, PEAK_TORQUE
 from ....objectives.quantity import Quantity
+from ....objectives.torque_and_power import MEAN_TORQUE, PEAK_TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_crank_angles
 from ...render.blocks import Block, named_number, number_list
 from ..peaks import lengths_row

@@ -9,8 +9,8 @@ import numpy as np
 from ....model.classical.loop_equations import static_forces
 from ....model.cycle.cycle import cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Counterweight, Friction, RigidLink
-from ....model.machine.cylinders_as_machines import cycle_turns
+from ....model.machine.cylinders_and_turns import cycle_turns
+from ....model.machine.links_and_joints import Counterweight, Friction, RigidLink
 from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism

@@ -7,8 +7,8 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Bar
-from ....model.machine.cylinders_as_machines import TURN, cycle_turns
+from ....model.machine.cylinders_and_turns import TURN, cycle_turns
+from ....model.machine.links_and_joints import Bar
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.panel_polynomials import wrap_into_cycle
 from ....model.strength.bar_stress import bar_stress

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism, Window
-from ....model.swing.summary import SwingRequest, SwingSummary, resolve_swing, summarise_swing
+from ....model.swing.request_and_summary import SwingRequest, SwingSummary, resolve_swing, summarise_swing
 from ....model.swing.swing import Swing
 from ....model.swing.swing_cycle import SwingCycle, SwingPoint
 from ....model.swing.swing_types import Driver, Law, Side

@@ -10,7 +10,7 @@ from ....model.cycle.crank_speed import speed_knots
 from ....model.cycle.cycle import breakpoints
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinders_as_machines import cycle_turns
+from ....model.machine.cylinders_and_turns import cycle_turns
 from ....model.machine.mechanism import Mechanism
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind

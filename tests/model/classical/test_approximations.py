@@ -23,7 +23,7 @@ from slidercrank.model.classical.approximations import (
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_machine
 

@@ -15,7 +15,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, RigidLink
+from slidercrank.model.machine.links_and_joints import Friction, RigidLink
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism

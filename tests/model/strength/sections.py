@@ -11,7 +11,7 @@ from slidercrank.model.cycle.cycle import cycle, derived_design
 from slidercrank.model.dynamics.torque import forces_without_friction
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.strength.section_forces import (
     CRANK,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints
-from slidercrank.model.machine.clearance import Counterweight
+from slidercrank.model.machine.links_and_joints import Counterweight
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.loads.load import AngleDatum

@@ -16,7 +16,7 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.forces import pin_distance_from_crank_line
 from slidercrank.model.swing.law import law_spline_pieces, travel_speed_acceleration
-from slidercrank.model.swing.summary import summarise_swing
+from slidercrank.model.swing.request_and_summary import summarise_swing
 from slidercrank.model.swing.swing import Swing, swing_between_crank_angles
 from slidercrank.objectives.tables.swing_columns import swing_quantities
 from tests.model.cases import Array

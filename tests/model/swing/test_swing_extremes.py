@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.machine.mechanism import Clearances, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.summary import error_shares
+from slidercrank.model.swing.request_and_summary import error_shares
 from slidercrank.model.swing.swing_cycle import SwingCycle
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from tests.model.swing.swings import random_swings

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import SwingCurves, swing_curves
 from slidercrank.model.swing.swing import Swing, require_swing

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism, Start
-from slidercrank.model.swing.summary import SwingRequest, resolve_swing, summarise_swing
+from slidercrank.model.swing.request_and_summary import SwingRequest, resolve_swing, summarise_swing
 from slidercrank.model.swing.swing import Swing
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem

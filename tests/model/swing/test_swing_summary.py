@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.summary import summarise_swing
+from slidercrank.model.swing.request_and_summary import summarise_swing
 from slidercrank.model.swing.swing import Swing, dead_point_angles, require_swing, slow_swing
 from slidercrank.model.swing.swing_types import Law
 from tests.model.bodies import bodies

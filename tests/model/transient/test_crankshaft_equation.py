@@ -11,9 +11,9 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
-from slidercrank.model.machine.cylinders_as_machines import machines_of_arrangement
+from slidercrank.model.machine.cylinders_and_turns import machines_of_arrangement
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.crank_torque import CrankTorque

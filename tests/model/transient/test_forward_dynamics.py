@@ -15,8 +15,8 @@ from scipy.special import ellipk
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.links_and_joints import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

@@ -13,8 +13,8 @@ from slidercrank.model.cycle.cycle import breakpoints, cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.links_and_joints import Friction, Pin, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.transient.flywheel import design_flywheel

@@ -11,8 +11,8 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, TorqueTable
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel

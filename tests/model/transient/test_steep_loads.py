@@ -16,7 +16,7 @@ from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.links_and_joints import Friction, Pin
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import torque_averages

@@ -6,9 +6,9 @@ import numpy as np
 
 from slidercrank.model.arrays import Array
 from slidercrank.model.machine.arm import Arm
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.lever import Lever
 from slidercrank.model.machine.lever_cylinder import Cylinder
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import CRANK_TURN
 from slidercrank.model.turning_cylinder.lever_state import LeverNumbers

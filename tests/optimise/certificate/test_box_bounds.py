@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Counterweight, Friction, RigidLink
+from slidercrank.model.machine.links_and_joints import Counterweight, Friction, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.engine import FourStroke, LimitedPressure

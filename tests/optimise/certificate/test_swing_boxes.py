@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.drag import Drag

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, best_balance
 from slidercrank.optimise.sizing.input_words import Measure

@@ -15,7 +15,7 @@ from scipy.optimize import minimize
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Bar, Friction
+from slidercrank.model.machine.links_and_joints import Bar, Friction
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Material, Mechanism
 from slidercrank.model.signals.peaks import find_peaks

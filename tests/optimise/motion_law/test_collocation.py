@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

@@ -13,7 +13,7 @@ import httpx
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.clearance import Bar
+from slidercrank.model.machine.links_and_joints import Bar
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import API, client_of

@@ -17,7 +17,7 @@ from matplotlib.patches import Circle as Disc
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
 from slidercrank.service.drawings.design_drawing import swing_drawing

@@ -13,7 +13,7 @@ from PIL import Image
 
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.law import travel_speed_acceleration
 from slidercrank.model.swing.swing import Swing

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import RigidLink
+from slidercrank.model.machine.links_and_joints import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
 from slidercrank.service.designs.design_curves import cycle_table

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_linkage, require_slider
-from ..machine.clearance import Friction
+from ..machine.links_and_joints import Friction
 from ..machine.mechanism import Mechanism, Start
 from ..tolerance.error_distributions import SOURCES, limits_of_sources
 from .swing import Swing, require_swing, slow_swing, swing_between_crank_angles, with_start_set_by_machine
