@@ -2,12 +2,23 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from numbers import Integral, Real
 from types import NoneType, UnionType
 from typing import get_args
 
 from .errors import InputError
 
 _REMEDY = "write text with a unit in the tables of a job"
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value is a real number; a bool is not."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def is_whole_number(value: object) -> bool:
+    """Return whether a value is a whole number; a bool is not."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def require_numbers(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Mask
+from ..checks import is_number
 from ..errors import AssemblyError, InputError
 from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
@@ -147,7 +147,7 @@ class Linkage:
         direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch, the inner dead
         centre is pi + b counter-clockwise from the outer one, so the inward stroke is slow.
         """
-        if not isinstance(direction, Real) or not (direction > 0.0 or direction < 0.0):
+        if not is_number(direction) or not (direction > 0.0 or direction < 0.0):
             raise InputError(
                 f"direction must be positive (counter-clockwise) or negative (clockwise); got {direction!r}"
             )

@@ -130,7 +130,7 @@ class _Rows:
     def curve_values(
         self, table: Complexes, row: IntArray, place: Array | Complexes, probe: Array, *, slow: bool = False
     ) -> Complexes:
-        """Return the curves (p, k) of rows at places (p, k); see `LeverBatch.values`."""
+        """Return the curves (p, k) of rows at places (p, k); see `LeverBatch.curve_values`."""
         curve, lever = np.divmod(row, self.batch.lever_count)
         return self.batch.curve_values(table, lever, self.curves[curve], place, probe, slow=slow)
 

@@ -238,7 +238,7 @@ def lever_angle_at(sizes: Any, length: Any, near: Any) -> Any:
 
 @analytic
 def angle_error_at(sizes: Any, psi: Any, length: Any, errors: Any) -> Any:
-    """Return the errors of `TurningCylinder.angle_error` at angles psi, rad; complex for complex steps."""
+    """Return the errors of `TurningCylinder.worst_lever_angle_error` at angles psi, rad; complex for complex steps."""
     r, f, cosine = sizes.crank, sizes.frame, np.cos(psi)
     total = length * errors.length + magnitude(sizes.offset) * errors.offset
     total = total + magnitude(r - f * cosine) * errors.crank + magnitude(f - r * cosine) * errors.frame

@@ -178,7 +178,7 @@ class CycleCurve:
             return [self._member_components_on_stroke(member, designs, d, place, side, read) for side in sides]
         x, y = self._member_components_on_stroke(member, designs, d, place, outward, read)
         if self.partial and not self.shares:
-            low, high = outward.ends()
+            low, high = outward.least_and_greatest()
             counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
             x = Enclosure(x.centre, x.slopes, np.where(counts, x.rest, np.nan), x.empty)
         return [(x, y)]

@@ -60,7 +60,7 @@ def crank_angle_near(
         middle = middle + TURN * np.round((near - middle) / TURN)
     c, s = np.cos(middle), np.sin(middle)
     off = np.arcsin(sine * c - cosine * s)
-    is_sure = (cosine * c + sine * s).ends()[0] > 0.0
+    is_sure = (cosine * c + sine * s).least_and_greatest()[0] > 0.0
     return Enclosure(off.centre + middle, off.slopes, np.where(is_sure, off.rest, np.nan), off.empty)
 
 
@@ -303,6 +303,6 @@ def select_by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
         greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
         return enclosure_of_ends(least, greatest, k)
     sides = [0.0 * outward + side for side in (out, back)]
-    (least, greatest), (back_least, back_greatest) = (side.ends() for side in sides)
+    (least, greatest), (back_least, back_greatest) = (side.least_and_greatest() for side in sides)
     either = enclosure_of_ends(np.minimum(least, back_least), np.maximum(greatest, back_greatest), k)
     return select_by_mask(low > 0.0, sides[0], select_by_mask(high < 0.0, sides[1], either))

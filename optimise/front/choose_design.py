@@ -8,13 +8,13 @@ one.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.arrays import Array, IntArray
+from ...model.checks import is_number
 from ...model.errors import InputError
 from ...model.kernel.batches import run_in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
@@ -88,7 +88,7 @@ class Priority:
 
     def __post_init__(self) -> None:
         for value in (self.absolute, self.share):
-            if not (isinstance(value, Real) and math.isfinite(value) and value >= 0.0):
+            if not (is_number(value) and math.isfinite(value) and value >= 0.0):
                 raise InputError(
                     f"the tolerance of {self.quantity} must be a number, zero or more; got {value!r}; leave it out"
                 )

@@ -8,7 +8,6 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
-from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask
+from ...model.checks import is_number
 from ...model.errors import InputError, warn_user
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
@@ -216,7 +216,7 @@ class ParetoFront:
         """
         columns = {self.column_of(name): weight for name, weight in weights.items()}
         for name, weight in weights.items():
-            if not isinstance(weight, Real):
+            if not is_number(weight):
                 raise InputError(f"the weight of {name} must be a number; got {weight!r}; write it like 2.0")
         shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
         return topsis(self.values, shares, normalisation=normalisation, size=self._objective_targets)
@@ -463,7 +463,7 @@ def least_and_greatest_of_bounds(name: str, ends: object) -> tuple[float | None,
     Raises `InputError` unless `ends` is such a pair.
     """
     bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
-    if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):
+    if len(bounds) != 2 or not all(end is None or (is_number(end) and not math.isnan(end)) for end in bounds):
         raise InputError(
             f"bounds of {name} must be (least, greatest), numbers or None; got {ends!r}; for example, write (1.0, None)"
         )

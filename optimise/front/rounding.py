@@ -9,11 +9,11 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from numbers import Integral, Real
 
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.checks import is_number, is_whole_number
 from ...model.errors import InputError, number_in_si_and_usual_unit
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
@@ -59,21 +59,21 @@ def round_design(
     Raises `InputError` for a step that is not positive or has no multiple within the range, an unknown name, a
     deviation that cannot be allowed, or a count below one.
     """
-    if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
+    if not is_whole_number(count) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
     allowed = _allowed_misses(part, allow or {})
     moved, remarks = _steps_of_movable_numbers(part, given, _rounding_steps(to, part))
     search = RoundingSearch(part, given, span, moved, allowed)
-    best = yield from search.best(int(count))
+    best = yield from search.best_designs(int(count))
     return Rounded(
         problem=part,
         design=given,
         steps=moved,
         allowed=allowed,
         dimensions=best,
-        design_objectives=search.values(given[None])[0],
-        values=search.values(best),
-        losses=search.losses(search.values(best)),
+        design_objectives=search.objectives_of_designs(given[None])[0],
+        values=search.objectives_of_designs(best),
+        losses=search.losses_of_objectives(search.objectives_of_designs(best)),
         constraint_values=search.constrained_values(best, search.constraints),
         constraints=search.constraints,
         steps_tried=search.window,
@@ -191,7 +191,7 @@ def _rounding_steps(to: float | Mapping[str, float], part: Problem) -> dict[str,
     for name, step in steps.items():
         if name not in ranges:
             raise InputError(f"a step must be for one of {', '.join(ranges)}; got {name!r}; name one of them")
-        if isinstance(step, bool) or not isinstance(step, Real) or not (math.isfinite(step) and step > 0.0):
+        if not is_number(step) or not (math.isfinite(step) and step > 0.0):
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
         if step < _SMALLEST * size:

@@ -119,7 +119,7 @@ class Candidates(Table):
         designs = np.zeros((len(self), max(len(evaluator.branch.names) for evaluator in evaluators)))
         for index in sorted_unique(self.branch).tolist():
             on_branch, branch = self.branch == index, evaluators[index].branch
-            designs[on_branch, : len(branch.names)] = branch.dimensions(self.u[on_branch][:, : len(branch.free)])
+            designs[on_branch, : len(branch.names)] = branch.designs_at_points(self.u[on_branch][:, : len(branch.free)])
         return designs
 
 

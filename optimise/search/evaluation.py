@@ -94,7 +94,7 @@ class Evaluator:
         return replace(constraint, lower=domain.lower + _CLEARANCE)
 
     def recorded_step(self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
-        """Return the result of a recorded step; see `Checkpoints.step`."""
+        """Return the result of a recorded step; see `Checkpoints.recorded_step`."""
         return self.checkpoints.recorded_step(kind, inputs, compute, self)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
