@@ -32,7 +32,17 @@ from .strict_input import StrictInput
 
 PREFIX = "/api/v1"
 _PARTS = (
-    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "what_if", "analysis"),
+    *(
+        "jobs",
+        "submissions",
+        "job_parsing_and_checks",
+        "preview",
+        "events",
+        "fronts",
+        "active_limits",
+        "what_if",
+        "analysis",
+    ),
     *("design_questions", "front_questions", "wish", "bookmarks", "design_files", "figures", "front_files"),
     *("quantities", "health"),
 )
