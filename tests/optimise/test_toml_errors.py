@@ -238,7 +238,7 @@ REFUSED = {
         'transmission_angle <= "40 deg"; write transmission_angle = { max = "40 deg" }'
     ),
     '[objectives]\npeak torque = "minimise"\n': (
-        'line 2, objectives.torque_and_power: a key must not contain spaces; got peak torque = "minimise"; '
+        'line 2, objectives.peak_torque: a key must not contain spaces; got peak torque = "minimise"; '
         'write peak_torque = "minimise"'
     ),
     "größe = 1\n": (

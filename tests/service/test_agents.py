@@ -33,6 +33,7 @@ from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
 from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, INPUTS, QUESTIONS, TOPICS
 from slidercrank.service.questions.record_types import schema_of
+from slidercrank.service.render.numerals import format_cell
 from slidercrank.service.text.tables import ROWS
 from tests.faults.waits import Stopwatch
 from tests.service import fronts, sized
@@ -149,7 +150,8 @@ def test_five_calls_lead_from_a_description_to_a_report(agent: Agent, tmp_path: 
     assert all(re.fullmatch(r"[a-z ]+ [\d,]+/[\d,]+: [\d,]+ evaluated, .*", words) for _, words in agent.progress)
     files = agent.ask("files", run=Path(found["run"]).name, write=["report"])["files"]
     page = Path(files["report"][0]).read_text(encoding="utf-8")
-    assert all(repr(value) in page for value in found["designs"][found["knee"]].values() if isinstance(value, float))
+    knee = found["designs"][found["knee"]].values()
+    assert all(format_cell(value) in page for value in knee if isinstance(value, float))
 
     (tmp_path / "job.toml").write_text(text, encoding="utf-8")
     options = ("--designs", 6, "--seed", 3, "--runs", tmp_path, "--no-figures")
@@ -440,7 +442,7 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
         assert f"  {of.name}: {of.title}; such as {of.name} = {{ {'max' if of.better == 'low' else 'min'} = " in bounds
     for name, question in DESIGN_QUESTIONS.items():
         assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.record_type)
-    assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.torque_and_power"))
+    assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
 
 
 def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:

@@ -218,7 +218,11 @@ def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, 
 @pytest.mark.parametrize(
     ("name", "given", "sentence"),
     [
-        ("allocate", ("limit", 0.3), "allocation needs the costs of the tolerances; this job has no [costs]; add"),
+        (
+            "allocate",
+            ("limit", 0.3),
+            "allocation needs the costs of the tolerances; this job has no [costs]; for example, add",
+        ),
         (
             "sections",
             None,
@@ -285,7 +289,7 @@ def test_an_endpoint_says_what_its_command_says_and_takes_its_inputs(address: st
         cleandoc(QUESTION_COMMANDS[name].help),
     )
     keys = [parameter["name"] for parameter in asked["parameters"]]
-    other = ("crank_mm", "rod_mm", "offset_mm", "value")  # numbers than those of the design
+    other = ("crank_mm", "rod_mm", "offset_mm", "value", "allow")  # than those of the design
     assert [key for key in keys if key not in ("number", "design", "units", *other)] == [
         one.key for one in DESIGN_QUESTIONS[name].inputs
     ]

@@ -73,7 +73,7 @@ def require_alike(shown: list[list[str]], told: list[list[str]], *, within: floa
         for (words, numbers), (expected, values) in zip(
             map(text_and_numbers, row), map(text_and_numbers, other), strict=True
         ):
-            assert words == expected.replace("# deg", "#°")  # as the page writes it
+            assert words == expected
             assert numbers == pytest.approx(values, rel=within, abs=1e-12), other
 
 
