@@ -13,7 +13,7 @@ _SEEDS = 12
 
 
 def is_usual(case: Any) -> bool:
-    """Whether a case of a test is among the first seeds; yes if all cases are tried, or the test has no seeds."""
+    """Whether a case of a test is among the first seeds, if these alone are tried."""
     return ALL_CASES or case is None or case.indices.get("seed", 0) < _SEEDS
 
 

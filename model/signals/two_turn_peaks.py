@@ -59,7 +59,7 @@ def averages_of_both_turns(first: _Averages, second: _Averages) -> tuple[Array, 
 
 
 def angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Array, half: int | IntArray) -> Array:
-    """Return the crank angles within both turns for peaks (n, k) of a half, or of one each, rad; NaN stays."""
+    """Return crank angles within both turns for peaks (n, k) of given halves, rad; NaN stays."""
     dimensions = designs[:, :3].T[:, :, None]
     inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)
     if mechanism.branch == "crossed":

@@ -125,7 +125,7 @@ class LeverSwing:
 
 @dataclass(frozen=True)
 class LeverCurves:
-    """Curves over the swing from start to end, each (n,), SI and radians; vectors as complex numbers x + i y.
+    """Curves over the swing, each (n,), SI and radians; vectors are complex numbers x + i y.
 
     The return has the same forces at the same places, as every law is symmetric, and the opposite speeds. push: force
     P of the cylinder without friction, N, positive where it pushes. speed: dL/dt, m/s. pin, pivot, cylinder_pivot:

@@ -1,4 +1,4 @@
-"""Progress of a running search: as numbers, as text, and as a live bar; summary of a search among discrete values."""
+"""Progress of a running search as numbers, text and a live bar; summary of a discrete search."""
 
 import contextlib
 import os

@@ -1,4 +1,4 @@
-"""Designs named on the command line: by dimensions, with or without a job, or chosen from a run as in `front`."""
+"""Designs on the command line: by dimensions, with or without a job, or from a run as in `front`."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
 
 
 def cost_of_change(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
-    """Return what the second of two runs costs and gains in the best values of the first, in a sentence.
+    """Return a sentence on the costs and gains of the second of two runs, in best values.
 
     names, results: as in `comparison_sentences`; no sentence for another number of runs, or if only targets are shared.
     """

@@ -48,7 +48,7 @@ class QuestionCommand:
 
 @dataclass(frozen=True)
 class Premise:
-    """What a question needs that not every machine has. words: without article or verb, "a motor"."""
+    """A need of a question that not every machine meets. words: without article or verb, "a motor"."""
 
     words: str
     is_met: Callable[[Problem, Mechanism], bool]

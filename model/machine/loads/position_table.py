@@ -78,7 +78,7 @@ class PositionTable(Load):
         return self.during == "cycle"
 
     def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return 1 or -1 for a table in one stroke, so that the same table in the other stroke cancels it."""
+        """Return 1 or -1 for a table in one stroke; the same table in the other stroke cancels it."""
         if self.during == "cycle":
             return {}
         return {(self.datum, self.positions, self.forces): (1.0 if self.during == "outward stroke" else -1.0,)}

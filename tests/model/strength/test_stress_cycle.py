@@ -62,7 +62,7 @@ def test_no_place_or_crank_angle_is_worse_than_the_peak(part: str, pulls: Array)
 
 @pytest.mark.parametrize("part", PARTS)
 def test_a_cycle_of_two_turns_has_the_greatest_stress_and_the_widest_swing_of_both(part: str) -> None:
-    """Tables over 720 deg: the worst of a dense sweep; each angle, or either of a pair, may be in either turn."""
+    """Tables over 720 deg: the worst of a dense sweep, whichever turns have the angles."""
     random, turns = np.random.default_rng(65), set()
     fatigue = np.array([[4.3e-9, 2.4e-9], [3.3e-9, 3.3e-9]])
     datums: list[AngleDatum] = ["zero crank angle", "inner dead centre", "outer dead centre"]

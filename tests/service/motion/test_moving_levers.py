@@ -51,7 +51,7 @@ def test_lever_and_cylinder_of_the_player_join_at_every_point(
 
 @pytest.mark.parametrize("lengths", [(0.12, 0.3, -0.02), (0.4, 0.2, 0.05)])
 def test_arm_and_ram_of_a_drawing_join_and_stay_within_its_extent(lengths: tuple[float, float, float]) -> None:
-    """The ram moves by y = R sin(gamma - direction of OA), and its pin lies on the line of the arm through A."""
+    """The ram moves by y = R sin(gamma - direction of OA), its pin on the arm's line through A."""
     problem, linkage = parse_job(SHAPER), Linkage(*lengths)
     assert problem.motion is not None
     machine, _ = lever_machine(problem.mechanism, linkage, problem.motion)
