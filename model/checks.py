@@ -16,7 +16,7 @@ def is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-def is_whole_number(value: object) -> bool:
+def is_integer(value: object) -> bool:
     """Return whether a value is a whole number; a bool is not."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.checks import is_number, is_whole_number
+from ...model.checks import is_integer, is_number
 from ...model.errors import InputError, number_in_si_and_usual_unit
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
@@ -59,7 +59,7 @@ def round_design(
     Raises `InputError` for a step that is not positive or has no multiple within the range, an unknown name, a
     deviation that cannot be allowed, or a count below one.
     """
-    if not is_whole_number(count) or count < 1:
+    if not is_integer(count) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
     allowed = _allowed_misses(part, allow or {})
     moved, remarks = _steps_of_movable_numbers(part, given, _rounding_steps(to, part))

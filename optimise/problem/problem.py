@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from numpy.typing import ArrayLike
 
-from ...model.checks import is_whole_number, require_field_types, store_as_tuples
+from ...model.checks import is_integer, require_field_types, store_as_tuples
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
@@ -72,7 +72,7 @@ class Settings:
             value = getattr(self, name)
             if value is None and name in ("samples", "evaluations"):
                 continue
-            if not is_whole_number(value) or int(value) < least:
+            if not is_integer(value) or int(value) < least:
                 raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
 
 
@@ -452,7 +452,7 @@ class Problem:
         """Return the problem of one variant, without choices. Raises `InputError` for an unknown variant."""
         if not self.variants:
             return self
-        if not is_whole_number(variant) or not -len(self.variants) <= variant < len(self.variants):
+        if not is_integer(variant) or not -len(self.variants) <= variant < len(self.variants):
             raise InputError(f"a variant must be one of 0 to {len(self.variants) - 1}, see `variants`; got {variant!r}")
         return self.with_variant(self.variants[variant])
 
