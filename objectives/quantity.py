@@ -262,9 +262,9 @@ class Quantity(ABC):
         raise NotImplementedError(f"{self.name} has no allowable value")
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return the formulas of raw numbers of which it is the maximum, for bounds over ranges.
+        """Return formulas in the machine's raw numbers whose maximum is the quantity, to bound it over ranges.
 
-        Empty if there are none.
+        Empty if it has none.
         """
         return ()
 

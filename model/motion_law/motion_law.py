@@ -1,4 +1,4 @@
-"""Motion laws: crank speed over the crank angle, for a drive torque that is linear in each cell.
+"""Motion laws: crank speed as a function of crank angle, for a drive torque that is linear in each cell.
 
 The kinetic energy is K = K_start + integral of T - Q over the angle passed (`law_turn`). It is exact except for the
 integral of Q, a polynomial of degree 15 on each cell. The crank acceleration is continuous except where a load steps.

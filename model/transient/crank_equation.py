@@ -188,7 +188,7 @@ class Equation:
     def require_inertia(self, added: float) -> None:
         """Raise `InputError` if nothing resists an acceleration of the crank somewhere.
 
-        With friction, also if friction may cancel the resistance. added: inertia of the drive, kg m^2.
+        Also raises it if friction may cancel the resistance. added: inertia of the drive, kg m^2.
         """
         angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
         inertia = self.moving_inertia(angles) + added

@@ -16,7 +16,7 @@ from .lever_state import LeverNumbers, work_against_gravity_and_spring
 def transmission_angle(c: LeverNumbers, lever_angle: Any) -> Any:
     """Return the angle, rad, between AB and the lever OB: sin(mu) = f |sin(psi)| / AB.
 
-    Between dead points its sine has at most a maximum, so that the angle is least at an end of a swing.
+    Between dead points its sine has no interior minimum, so the angle is least at an end of a swing.
     """
     psi = lever_angle + c.pin_angle - c.frame_angle
     return np.arcsin(c.frame * magnitude(np.sin(psi)) / pin_distance(c.crank, c.frame, psi))

@@ -157,6 +157,6 @@ def _greatest_points(
 
 
 def _least_transmission(ends: LeverCurves) -> LeverPoint:
-    """Return the least transmission angle, which is at an end: its sine has at most a maximum between dead points."""
+    """Return the least transmission angle, which is at an end: its sine has no minimum between dead points."""
     least = int(np.argmin(ends.transmission))
     return LeverPoint(float(ends.transmission[least]), float(ends.lever_angle[least]), float(ends.length[least]))

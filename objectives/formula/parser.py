@@ -51,7 +51,7 @@ def parse(text: str, units: Units) -> Node:
     the problem. Operators: + - * / ** (or ^) and brackets; functions: `ARGUMENTS`.
     """
     if len(text) > LONGEST:
-        raise InputError(f"a formula has at most {LONGEST} characters; got {len(text)}; give parts of it names")
+        raise InputError(f"a formula may have at most {LONGEST} characters; got {len(text)}; give parts of it names")
     reader = _Reader(text.translate(_SAME), units)
     node = reader.read_sum()
     if reader.next.text:
@@ -103,13 +103,13 @@ class _Reader:
         self.depth += 1
         if self.depth > DEEPEST:
             self.raise_error(
-                f"brackets, functions and signs must be nested at most {DEEPEST} deep", "give parts of it names"
+                f"brackets, functions and operators must be nested at most {DEEPEST} deep", "give parts of it names"
             )
 
     def counted_call(self, function: str, *arguments: Node) -> Call:
         self.calls += 1
         if self.calls > _MOST:
-            self.raise_error(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
+            self.raise_error(f"a formula may have at most {_MOST} operators and functions", "give parts of it names")
         return Call(function, arguments)
 
     # ---- one method for each level of binding strength ---------------------------------------------------------------

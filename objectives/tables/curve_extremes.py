@@ -221,7 +221,7 @@ def _minima_and_maxima(
 def _coarse_extremes(
     pieces: list[Array], samples: list[Array], sizes: Array, sign: float
 ) -> tuple[list[tuple[float, float]], Array, Array, Array]:
-    """Return each curve's best piece end, times the sign, and the brackets that may contain a better value.
+    """Return each curve's highest value at a piece end, times the sign, and the brackets that may contain a higher one.
 
     For a constant or undetermined curve, return its value instead. Brackets: row of the curve, left and right crank
     angle.

@@ -104,7 +104,7 @@ def like(
     for item in constraints:
         if not isinstance(item, Constraint):
             raise InputError(
-                f"a requirement for like must be a Constraint; got {item!r}; write it like "
+                f"a requirement passed to like() must be a Constraint; got {item!r}; write it like "
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
     ranges = {name: least_and_greatest_of_bounds(name, ends) for name, ends in (ranges or {}).items()}

@@ -209,7 +209,7 @@ class ObjectiveOutcome:
             return f", {far} the desired {wished}"
         if short < 0.0:
             return f", {amount} better than the desired {wished}"
-        return f" instead of the desired {wished}: it must give way by {amount}"
+        return f" instead of the desired {wished}: it must be relaxed by {amount}"
 
     def _value_text(self, value: float, system: System) -> str:
         unit, factor = metric_unit_in(self.quantity.unit.symbol, system)

@@ -171,7 +171,7 @@ class Chunked(Generic[Subject]):
 
         kind: key for work with the same time per row; by default, the question. together: whether rows are much faster
         together than one by one. Such rows are not divided in this process; elsewhere they are divided into at most one
-        chunk per worker. Raises the errors of the work, the engine and `poll`.
+        chunk per worker. Passes on errors from the work, the engine and `poll`.
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):

@@ -225,8 +225,8 @@ class ParetoFront:
         """Return the row that remains when objectives decide in turn; see `choose_design.lexicographic`.
 
         `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: among the designs
-        within a tenth of the range from the least torque, the one with the best transmission angle. A name alone means
-        zero share.
+        whose torque exceeds the least by at most a tenth of its range, the one with the best transmission angle. A name
+        alone means zero share.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
         for item in order:

@@ -4,7 +4,7 @@ The questions of interfaces belong to a layer above the problem, which therefore
 group `slidercrank.questions` invert the dependency, as those in `slidercrank.quantities` do: each is a mapping from
 names to questions.
 
-A `Remark` is a sentence about a job with the change to the job that resolves it.
+A `Remark` is a sentence that points out a possible mistake in a job, with the change that corrects it, if there is one.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Change:
 
 
 class Remark(str):
-    """A sentence about a job, and the change that resolves it."""
+    """A sentence that points out a possible mistake in a job, and the change that corrects it, if there is one."""
 
     change: Change | None
 
@@ -47,7 +47,7 @@ class Remark(str):
 
 
 def changes_of(sentences: Iterable[str]) -> list[dict[str, Any]]:
-    """Return the changes that resolve sentences, each with its sentence, path, value and label."""
+    """Return the changes that the sentences propose, each with its sentence, path, value and label."""
     remarks = [sentence for sentence in sentences if isinstance(sentence, Remark)]
     return [{"sentence": str(remark), **vars(remark.change)} for remark in remarks if remark.change is not None]
 

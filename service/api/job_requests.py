@@ -73,7 +73,7 @@ class Submission(BaseModel, extra="forbid", strict=True):
         None,
         ge=1,
         le=LARGEST,
-        description="number of the job of which it is a changed copy; omitted once that is deleted",
+        description="number of the original job if this is a modified copy; omitted once the original is deleted",
         examples=[1],
     )
 

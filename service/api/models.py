@@ -105,7 +105,7 @@ class JobStateModel(JobRow, title="Job"):
     progress: JobProgress | None
     summary: JobSummary | None
     origin: int | None = Field(
-        None, description="number of the job of which it is a changed copy, which may be deleted"
+        None, description="number of the original job if this is a modified copy; the original may have been deleted"
     )
 
 

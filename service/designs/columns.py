@@ -38,7 +38,7 @@ class Column:
 def find_column(name: str, keys: Collection[str]) -> Column:
     """Return the column for a name: a key of the table, or a quantity as in job files ("peak_torque").
 
-    Keys of every unit system are accepted: `crank_in` is `crank_mm`. Raises `InputError` that suggests the nearest
+    Keys in every unit system are accepted: `crank_in` finds `crank_mm`. Raises `InputError` that suggests the nearest
     names.
     """
     name = name.strip()

@@ -1,4 +1,4 @@
-"""The description of the API as a page to read and try: Swagger UI, from an installed package."""
+"""Page that describes the API and lets readers try its requests: Swagger UI, from an installed package."""
 
 import hashlib
 import re

@@ -75,7 +75,10 @@ def sampled_designs(problem: Problem) -> tuple[Array, NDArray[np.bool_]]:
 def _points_of_branches(
     branches: Sequence[EliminationBranch], count: int, stream: int
 ) -> Iterator[tuple[int, Array, bool]]:
-    """Yield points of each branch by its index, with whether they are uniform: by the width of its offsets."""
+    """For each branch, yield its index, points, and whether they are uniform.
+
+    The number of uniform points is proportional to the width of the offset range, if all branches search offsets.
+    """
     ranges = [branch.bounds["offset"] for branch in branches]
     by_width = all("offset" in branch.free for branch in branches)
     widths = [item.upper - item.lower if by_width else 1.0 for item in ranges]

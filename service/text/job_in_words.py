@@ -111,7 +111,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
 
 
 def _machine_lines(problem: Problem) -> list[str]:
-    """Return the machine of a problem line by line, with the ranges of its variables."""
+    """Return the lines that describe the machine of a problem, with the ranges of its variables."""
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.at_bounds_of_variables)
     if len(low) != len(high):  # a number that is zero at one end would omit its line
         return machine_in_words(problem, problem.mechanism)
@@ -119,7 +119,7 @@ def _machine_lines(problem: Problem) -> list[str]:
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
-    """Return a machine of a problem line by line: the stated machine, or that of a design."""
+    """Return the lines that describe a machine of a problem: the stated machine, or that of a design."""
     return [*_speed_lines(problem, mechanism), *_mechanism_lines(mechanism)]
 
 

@@ -146,7 +146,7 @@ def test_the_schema_says_of_formulas_what_their_keys_are_like() -> None:
         ),
         ({"constraints": {"+".join(["crank"] * 2000): {"min": 1}}}, "at most 500 characters; got 11999"),
         ({"constraints": {"(" * 100 + "crank": {"min": 1}}}, "at most 40 deep"),
-        ({"constraints": {"crank" + "+ 1" * 110: {"min": 1}}}, "at most 100 signs and functions"),
+        ({"constraints": {"crank" + "+ 1" * 110: {"min": 1}}}, "at most 100 operators and functions"),
         ({"constraints": {"rod": {"equals": "3.2 * ofset"}}}, 'constraints.rod.equals: .*"ofset"; did you mean offset'),
         ({"constraints": {"stroke": {"max": "2 * crank + 3 N"}}}, "constraints.stroke.max: .* adds mm and N"),
         ({"constraints": {"2 crank": {"max": 1}}}, "one of .* is missing between 2 and crank"),

@@ -49,7 +49,7 @@ SLIPS: dict[str, tuple[Any, str]] = {
     "wish": (lambda: door.wish(NO_FRONT, {"peak_torque": 1.0}), "a wish needs a front; got Problem"),
     "like by text": (
         lambda: door.like(front(), 0, "time_ratio >= 1.2"),
-        "a requirement for like must be a Constraint; got 'time",
+        "a requirement passed to like() must be a Constraint; got 'time",
     ),
     "range": (
         lambda: door.like(front(), 0, ranges={"rod": 0.1}),

@@ -169,7 +169,7 @@ def test_what_cannot_be_had_gives_way_evenly() -> None:
     short = (answer.found.values[0] - aim)[:2] / span[:2]
     assert not answer.possible
     assert short[0] == pytest.approx(short[1], abs=1e-6)
-    assert "it must give way by" in answer.sentences()[1]
+    assert "it must be relaxed by" in answer.sentences()[1]
 
 
 def test_a_choice_is_free_again() -> None:

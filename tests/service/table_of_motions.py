@@ -182,7 +182,7 @@ def certificates(motion: Motion) -> Refusals:
 
 def _rule(name: str, reason: str) -> str:
     """Return the rule of a refusal without value, remedy and the name of what is refused."""
-    rule = reason.removeprefix(f"{name}: ").partition(";")[0].replace(f"'{name}'", "like this")
+    rule = reason.removeprefix(f"{name}: ").partition(";")[0].replace(f"is called '{name}'", "has this name")
     for words in (FACTS[name].title, name):
         rule = re.sub(rf"^{re.escape(words)}\b", "it", rule)
     return rule

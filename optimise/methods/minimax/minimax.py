@@ -37,7 +37,7 @@ from ..registry import Method
 from .scp import Descent
 
 STARTS = 12
-"""Number of starts for the programme: the best screened designs that lie apart."""
+"""Number of starting points for the programme: the best screened designs that are far enough apart."""
 _LAST = 4096  # samples for the starts if none is feasible
 
 

@@ -89,7 +89,7 @@ def _path_name(place: str) -> str:
 
 
 def _objectives_message(runs: Sequence[ComparedRun]) -> str:
-    """Return the rule if a run has other objectives than the first one."""
+    """Return the rule if a run's objectives differ from those of the first run, otherwise an empty text."""
     for run in runs[1:]:
         if {_objective_identity(item) for item in run.result.objectives} != {
             _objective_identity(item) for item in runs[0].result.objectives

@@ -27,8 +27,8 @@ _Change = Annotated[
     dict[str, Any],
     Keys(
         "Change",
-        "Change of a quantity: in its unit for 1 mm more of a dimension, in percent for 1 % more, and for its "
-        "tolerance; a second value is given for a smaller dimension if a kink makes it differ.",
+        "Changes in a quantity: per mm of a dimension, in percent per percent, and for its tolerance. If a kink makes "
+        "the change towards smaller dimensions differ, a second value gives it.",
         {
             "quantity": str,
             "title": str,

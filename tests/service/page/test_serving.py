@@ -70,7 +70,7 @@ def test_the_typeface_has_the_letters_of_the_page_in_its_weights_under_its_open_
 
 def test_without_the_token_a_browser_is_told_where_it_is(open_page: Open, store: Store) -> None:
     page = open_page(store, settings=Settings(token=TOKEN), expected=("401",))
-    expect(page.get_by_role("heading")).to_have_text("This service asks for its token")
+    expect(page.get_by_role("heading")).to_have_text("This service requires a token")
     host = urlsplit(page.url).netloc
     expect(page.get_by_role("main")).to_contain_text(f"http://{host}/?token=…")
     expect(page.locator(".masthead .brand")).to_have_css("display", "flex")
@@ -93,7 +93,7 @@ def test_who_gives_the_token_comes_to_the_view_that_was_asked_for(open_page: Ope
     # Whoever loses the cookie, as when the service starts anew, is asked once more, in front of the view.
     page.context.clear_cookies()
     page.evaluate("location.hash = '#/'")
-    page.get_by_role("dialog", name="This service asks for its token").get_by_label("Token").fill(TOKEN)
+    page.get_by_role("dialog", name="This service requires a token").get_by_label("Token").fill(TOKEN)
     page.get_by_role("button", name="Open").click()
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
 
@@ -108,7 +108,7 @@ def test_what_is_typed_as_the_token_is_lost_stays_and_is_answered(open_page: Ope
     page.context.clear_cookies()
     own = float(crank.input_value())
     crank.fill(str(own - 1.0))
-    dialog = page.get_by_role("dialog", name="This service asks for its token")
+    dialog = page.get_by_role("dialog", name="This service requires a token")
     dialog.get_by_label("Token").fill("wrong")
     dialog.get_by_label("Token").press("Enter")
     expect(dialog.get_by_role("alert")).to_have_text("That was not the token of this service.")

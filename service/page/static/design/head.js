@@ -124,7 +124,7 @@ function compare({ job, number, front, main, others, objectives }) {
         {
           class: "row prefer",
           title:
-            "Computes the optimal design that continues in the same direction, by at most the same distance",
+            "Improves further what the preferred design does better; the rest may worsen by at most the same amount again",
         },
         "Which do you prefer?",
         [main, ...others].map((one, n) =>

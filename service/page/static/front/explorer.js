@@ -157,7 +157,7 @@ export class Explorer {
         h(
           "p",
           { class: "quiet hint" },
-          "Drag along an axis to set limits; double-click to clear them. The name of an axis opens a menu with the same limits as fields.",
+          "Drag along an axis to set limits; double-click to clear them. Click the name of an axis for a menu with fields for the same limits.",
         ),
         h(
           "div",

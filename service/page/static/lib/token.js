@@ -31,7 +31,7 @@ function ask() {
           resolve(dialog.returnValue === "in");
         },
       },
-      h("h2", { id: "locked" }, "This service asks for its token"),
+      h("h2", { id: "locked" }, "This service requires a token"),
       h(
         "p",
         {},

@@ -199,8 +199,8 @@ function overview(place, quantities, sought) {
           h(
             "li",
             {},
-            h("a", { href: "api/v1/docs" }, "The API, to read and to try"),
-            " – every request, on this service",
+            h("a", { href: "api/v1/docs" }, "API reference"),
+            " – describes every request and lets you try it on this service",
           ),
         ),
       ),
