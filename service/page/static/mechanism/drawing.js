@@ -105,7 +105,8 @@ export function drawing(place, { label, grips = null }) {
             hasStrokeAngles: grips !== null,
           }),
     );
-    words.replaceChildren(...still.querySelectorAll("text"));
+    // Those of a lever are turned with their dimensions.
+    words.replaceChildren(...(lever ? [] : still.querySelectorAll("text")));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({
       linkage,
