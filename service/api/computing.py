@@ -49,7 +49,7 @@ class QuickRoute(APIRoute):
             async with state.turn_here:
                 await super().handle(scope, receive, send)
         elif scope["method"] in (self.methods or ()):
-            await state.computing.handle(self.turns, scope, receive, send)
+            await state.computing.handle_in_idle_process(self.turns, scope, receive, send)
         else:
             await super().handle(scope, receive, send)
 
