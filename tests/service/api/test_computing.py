@@ -177,7 +177,7 @@ class _Elsewhere:
     def __init__(self) -> None:
         self.asked = 0
 
-    async def handle(self, _turns: str, _scope: Scope, _receive: Receive, send: Send) -> None:
+    async def handle_in_idle_process(self, _turns: str, _scope: Scope, _receive: Receive, send: Send) -> None:
         """Answer with 204."""
         self.asked += 1
         await send({"type": "http.response.start", "status": 204, "headers": []})
