@@ -53,7 +53,7 @@ def test_the_migrated_tables_are_those_that_the_code_knows(database: Database) -
 def test_a_store_of_a_later_release_is_refused_and_left_as_it_is(database: Database, address: str) -> None:
     with database.writing() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
-    with pytest.raises(StoreError, match="has version 9999, this release supports 0008"):
+    with pytest.raises(StoreError, match="has version 9999, this release supports 0009"):
         Store(address)
     with database.reading() as connection:
         assert connection.scalar(text("SELECT version_num FROM alembic_version")) == "9999"

@@ -186,7 +186,8 @@ function offset(view, e, x, beside, written) {
  */
 function strokeOf(view, { crank_mm: r, offset_mm: e }, ends, least, link, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
-  const words = `${swings ? "travel" : "stroke"} ${withUnit(Math.abs(ends[1] - ends[0]), "mm", 4)}`;
+  const size = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);
+  const words = swings ? `travel ${size}` : `stroke ${size}`;
   const half = (LETTER * words.length) / 2;
   const room = to - from > 2 * half + 8;
   const beyond = ends[0] + ends[1] > 0 ? to + 6 : from - 6;
