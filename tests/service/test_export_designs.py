@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from ezdxf.filemanagement import readfile
 
+from slidercrank.service.render.numerals import format_cell
 from slidercrank.service.runs.result import rows_from_csv
 from tests.service.conftest import Command
 
@@ -154,7 +155,7 @@ def test_a_report_is_written_as_html_and_as_pdf(
     assert file.name.endswith("short-test-job-design-3.html")
     assert done.stderr == f"report: {file.name}\n"
     page = file.read_text(encoding="utf-8")
-    assert all(repr(value) in page for value in front["designs"][2].values() if isinstance(value, float))
+    assert all(format_cell(value) in page for value in front["designs"][2].values() if isinstance(value, float))
     assert "Trade-offs here, to first order: " in page
     assert "<script" not in page
     monkeypatch.setattr("slidercrank.service.report.pdf.pdf_file", lambda report: report.title.encode())

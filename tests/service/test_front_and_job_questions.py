@@ -416,12 +416,12 @@ import slidercrank.service.questions as package
 package.__path__.append(sys.argv[1])
 from pathlib import Path
 from slidercrank.service.agents.server import TOOLS
-from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.stored_designs import front_of_result
 from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service.test_front_and_job_questions import ASK, call_in
 
 folder = Path(sys.argv[2])
-front = front_of(problem_of(folder, read_run(folder)), read_run(folder))
+front = front_of_result(problem_of(folder, read_run(folder)), read_run(folder))
 inputs = {"column": "rod_mm"}
 asked = {"run": folder.name, "topics": ["reach"], "inputs": inputs, "units": "inch"}
 agent = ASK.execute(call_in(folder.parent), asked)
