@@ -150,6 +150,8 @@ def _segments_per_turn(fields: Sequence[StressField]) -> int:
 def _samples_of_cycle(fields: Sequence[StressField]) -> Samples:
     """Return the samples of all turns, design by design, with segments numbered over the cycle."""
     parts = [field.samples for field in fields]
+    if len(parts) == 1:
+        return parts[0]
     design = np.concatenate([np.repeat(np.arange(len(part.start) - 1), np.diff(part.start)) for part in parts])
     order = np.argsort(design, kind="stable")
     segments = [part.segment + turn * _segments_per_turn(fields) for turn, part in enumerate(parts)]
